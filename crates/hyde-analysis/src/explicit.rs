@@ -5,7 +5,7 @@
 //! residual) until the rest is explicit, those with a guess first. A variable that reads much of an array (a field at a
 //! place that moves) stays in the vector: in its place every equation that reads it would depend on all of that. So does an
 //! array of which one equation reads much (the weights at such a place): the derivative of that equation would repeat the
-//! definition for every element. Array variables are kept or taken whole. The unknown of a `modes` block stays in
+//! definition for every element. Array variables are kept or taken whole, in as many pieces as equations give them. The unknown of a `modes` block stays in
 //! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly without a division by
 //! parameters.
 
@@ -227,12 +227,11 @@ fn read_much_of(system: &System) -> HashSet<VarId> {
     found
 }
 
-/// An array of which a piece stays in the vector stays there whole; so does one in several pieces.
+/// An array of which a piece stays in the vector stays there whole.
 fn keep_arrays_together(matched: &Matched, in_vector: &mut [bool]) {
     let mut stays: HashMap<VarId, bool> = HashMap::new();
     for (unknown, kept) in matched.unknowns.iter().zip(&*in_vector) {
-        let in_pieces = stays.contains_key(&unknown.var);
-        *stays.entry(unknown.var).or_default() |= in_pieces || *kept;
+        *stays.entry(unknown.var).or_default() |= *kept;
     }
     for (unknown, kept) in matched.unknowns.iter().zip(in_vector) {
         *kept |= stays[&unknown.var];

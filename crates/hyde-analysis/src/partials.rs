@@ -1,19 +1,23 @@
 //! Derivatives of every function by the solver's vector, its derivative, delayed values and time (S2).
 //!
 //! Explicit variables are replaced by their definitions first, shifted to the counter of the row that reads them, so the
-//! result is the total derivative. One reverse pass a row gives all its entries; an array row gives array entries.
+//! result is the total derivative. One reverse pass a row gives all its entries; an array row gives array entries. Where a
+//! row reads an array that is defined in several pieces, it has as many parts:
+//! ```text
+//! tau[0] = 2*q[0];  tau[i] = q[i] for i in 1..8;  row i: tau[i] - tau[i-1] for i in 1..8
+//!     row 1: q[1] - 2*q[0];  row i: q[i] - q[i-1] for i in 2..8
+//! ```
 
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
 use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Fills in the derivatives of the DAE's functions.
 pub(crate) fn differentiate(dae: &mut Dae) {
     let definitions = expanded_definitions(dae);
     for function in Function::ALL {
         let mut list = Vec::new();
-        for (range, row, value) in rows(dae, function) {
-            let value = expand(&mut dae.exprs, value, &definitions);
+        for (range, row, value) in expanded_rows(dae, function, &definitions) {
             let gradient = dae.exprs.gradient(value, |expr| {
                 matches!(expr, Expr::Var(..) | Expr::Der(..) | Expr::Time)
             });
@@ -35,6 +39,20 @@ pub(crate) fn differentiate(dae: &mut Dae) {
         list.sort_by_key(|partial| matches!(partial.wrt, Wrt::Delayed(_)));
         dae.partials.push((function, list));
     }
+}
+
+/// The rows of a function with explicit variables replaced by their definitions.
+pub(crate) fn expanded_rows(
+    dae: &mut Dae,
+    function: Function,
+    definitions: &Pieces,
+) -> Vec<(Range, Index, ExprId)> {
+    let mut found = Vec::new();
+    for (range, row, value) in rows(dae, function) {
+        let parts = expand(&mut dae.exprs, range, value, definitions);
+        found.extend(parts.into_iter().map(|(part, value)| (part, row, value)));
+    }
+    found
 }
 
 /// The rows of a function: range, row, value.
@@ -152,42 +170,86 @@ fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
     })
 }
 
+/// The definitions of each variable, with earlier ones put in: of an array in several pieces one for each, by the element it
+/// begins with.
+pub(crate) type Pieces = HashMap<VarId, BTreeMap<i32, Definition>>;
+
 /// The definitions with earlier ones put in.
-pub(crate) fn expanded_definitions(dae: &mut Dae) -> HashMap<VarId, Definition> {
-    let mut known: HashMap<VarId, Definition> = HashMap::new();
+pub(crate) fn expanded_definitions(dae: &mut Dae) -> Pieces {
+    let mut known = Pieces::new();
     for definition in dae.definitions.clone() {
-        let value = expand(&mut dae.exprs, definition.value, &known);
-        known.insert(
-            definition.var,
-            Definition {
+        for (range, value) in expand(&mut dae.exprs, definition.range, definition.value, &known) {
+            let piece = Definition {
+                range,
                 value,
-                ..definition
-            },
-        );
+                ..definition.clone()
+            };
+            let ends = [range.first, range.last].map(|counter| piece.index.at(counter));
+            let pieces = known.entry(definition.var).or_default();
+            pieces.insert(ends[0].min(ends[1]), piece);
+        }
     }
     known
 }
 
-/// An expression with explicit variables replaced by their definitions.
+/// An expression with explicit variables replaced by their definitions, for each part of the range: it ends where the
+/// expression begins to read another piece of an array.
 pub(crate) fn expand(
     arena: &mut ExprArena,
+    range: Range,
     root: ExprId,
-    definitions: &HashMap<VarId, Definition>,
-) -> ExprId {
-    arena.rewrite(root, &mut Memo::default(), |arena, _, expr| {
-        let Expr::Var(var, index) = expr else {
-            return None;
+    definitions: &Pieces,
+) -> Vec<(Range, ExprId)> {
+    let parts = parts(arena, range, root, definitions);
+    let replaced = parts.into_iter().map(|part| {
+        let value = arena.rewrite(root, &mut Memo::default(), |arena, _, expr| {
+            let Expr::Var(var, index) = expr else {
+                return None;
+            };
+            let (_, definition) = piece(definitions.get(&var)?, index.at(part.first))?;
+            if definition.index.stride == 0 {
+                return Some(definition.value);
+            }
+            // The definition's counter j in the reader's counter i: index(j) = stride_d*j + offset_d, stride_d = ±1.
+            let sign = definition.index.stride;
+            let counter = Index {
+                stride: sign * index.stride,
+                offset: sign * (index.offset - definition.index.offset),
+            };
+            Some(arena.with_counter(definition.value, counter))
+        });
+        // Of a single row the same element has the same index, wherever it is read.
+        let value = match part.len() {
+            1 => arena.with_counter(value, Index::fixed(part.first)),
+            _ => value,
         };
-        let definition = definitions.get(&var)?;
-        if definition.index.stride == 0 {
-            return Some(definition.value);
-        }
-        // The definition's counter j in the reader's counter i: index(j) = stride_d*j + offset_d, stride_d = ±1.
-        let sign = definition.index.stride;
-        let counter = Index {
-            stride: sign * index.stride,
-            offset: sign * (index.offset - definition.index.offset),
+        (part, value)
+    });
+    replaced.collect()
+}
+
+/// The parts of a range in each of which an expression reads one piece of every explicit array.
+fn parts(arena: &ExprArena, range: Range, root: ExprId, definitions: &Pieces) -> Vec<Range> {
+    let mut starts = BTreeSet::from([range.first]);
+    for id in arena.below(&[root]) {
+        let Expr::Var(var, index) = arena[id] else {
+            continue;
         };
-        Some(arena.with_counter(definition.value, counter))
-    })
+        let Some(pieces) = definitions.get(&var).filter(|pieces| pieces.len() > 1) else {
+            continue;
+        };
+        let begin = |counter: i32| piece(pieces, index.at(counter)).map(|(begin, _)| begin);
+        let others = range.iter().skip(1);
+        starts.extend(others.filter(|&counter| begin(counter) != begin(counter - 1)));
+    }
+    let starts: Vec<i32> = starts.into_iter().collect();
+    let next = starts.iter().skip(1).map(|start| start - 1);
+    let lasts = next.chain([range.last]);
+    let parts = starts.iter().zip(lasts);
+    parts.map(|(&first, last)| Range { first, last }).collect()
+}
+
+/// The piece that has an element, and the element it begins with.
+fn piece(pieces: &BTreeMap<i32, Definition>, element: i32) -> Option<(&i32, &Definition)> {
+    pieces.range(..=element).next_back()
 }

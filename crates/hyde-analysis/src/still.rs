@@ -4,7 +4,7 @@
 //! Every number of the parameter vector counts on its own here, derived ones too; [`parameter_slopes`] tell how derived
 //! ones follow from the others.
 
-use crate::partials::{expand, expanded_definitions, rows};
+use crate::partials::{expand, expanded_definitions, expanded_rows};
 use hyde_ir::dae::{Dae, Function, Partial, Space, Wrt};
 use hyde_ir::{ClockId, Expr, ExprId, Index, Memo, Range, VarId};
 use std::collections::HashMap;
@@ -13,9 +13,8 @@ use std::collections::HashMap;
 pub fn still_partials(dae: &mut Dae, function: Function) -> Vec<Partial> {
     let definitions = expanded_definitions(dae);
     let mut list = Vec::new();
-    for (range, row, value) in rows(dae, function) {
-        let value = expand(&mut dae.exprs, value, &definitions);
-        slopes(dae, (range, row, value), &mut list);
+    for row in expanded_rows(dae, function, &definitions) {
+        slopes(dae, row, &mut list);
     }
     list
 }
@@ -125,12 +124,16 @@ pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, Expr
     let mut assigned: HashMap<(VarId, i32), ExprId> = HashMap::new();
     let mut found = Vec::new();
     for assignment in dae.ticks[clock].assignments.clone() {
-        for counter in assignment.range.iter() {
+        let (range, value) = (assignment.range, assignment.value);
+        let parts = expand(&mut dae.exprs, range, value, &definitions);
+        let values = parts
+            .into_iter()
+            .flat_map(|(part, value)| part.iter().map(move |at| (at, value)));
+        for (counter, value) in values {
             let at = Index {
                 stride: 0,
                 offset: counter,
             };
-            let value = expand(&mut dae.exprs, assignment.value, &definitions);
             let value = dae.exprs.with_counter(value, at);
             let value = dae
                 .exprs

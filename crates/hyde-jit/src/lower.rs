@@ -16,7 +16,7 @@ use cranelift_frontend::FunctionBuilder;
 use hyde_ir::{BinaryOp, Dae, Expr, ExprId, Index, Range, UnaryOp};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
-use std::ops;
+use std::ops::{self, RangeInclusive};
 
 /// Ranges shorter than this are written out.
 const LOOP_FROM: usize = 8;
@@ -37,6 +37,8 @@ pub(crate) struct Lowering<'a, 'f, 'i> {
     known: Known,
     /// Scalar explicit variables by their place in the workspace.
     explicit: HashMap<i32, ir::Value>,
+    /// The places of the workspace that loops read, which find them in memory.
+    read_in_loops: Vec<RangeInclusive<i32>>,
     /// Whether each node changes with the counter.
     pub(crate) moving: FxHashMap<ExprId, bool>,
     /// Which numbers are kept for the parts that follow, and those that are by now.
@@ -102,6 +104,7 @@ pub(crate) fn lower<'a>(
         bases: [None; Slot::ALL.len()],
         known: Known::default(),
         explicit: HashMap::new(),
+        read_in_loops: Vec::new(),
         moving: moving(dae, routine, steps.clone()),
         parts,
         kept,
@@ -142,6 +145,18 @@ impl Lowering<'_, '_, '_> {
         for step in steps {
             used[step.slot as usize] |= step.slot == Slot::Out || step.range.len() > 1 || in_parts;
         }
+        for step in steps.iter().filter(|step| step.range.len() > 1) {
+            for id in self.dae.exprs.below(&[step.value]) {
+                let leaf = self.routine.leaf(self.dae, self.dae.exprs[id]);
+                if let Some(Leaf::Load(Slot::Work, index)) = leaf
+                    && index.stride != 0
+                {
+                    let ends = [step.range.first, step.range.last].map(|counter| index.at(counter));
+                    let places = ends[0].min(ends[1])..=ends[0].max(ends[1]);
+                    self.read_in_loops.push(places);
+                }
+            }
+        }
         let roots: Vec<ExprId> = steps.iter().map(|step| step.value).collect();
         for id in self.dae.exprs.below(&roots) {
             match self.routine.leaf(self.dae, self.dae.exprs[id]) {
@@ -181,8 +196,12 @@ impl Lowering<'_, '_, '_> {
         let element = step.target.at(counter);
         if step.slot == Slot::Work && step.range == Range::SCALAR {
             self.explicit.insert(element, value);
-            // A part that follows reads it from memory.
-            if self.parts.steps.len() == 1 {
+            // A part that follows reads it from memory, and so does a loop.
+            let in_loop = self
+                .read_in_loops
+                .iter()
+                .any(|places| places.contains(&element));
+            if self.parts.steps.len() == 1 && !in_loop {
                 return;
             }
         }

@@ -106,7 +106,10 @@ pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
                 Wrt::Delayed(index) => format!("delayed {}", subscript(index, 0)),
                 Wrt::Time => "time".to_owned(),
             };
-            let row = subscript(partial.row, 0);
+            let row = match partial.range.len() {
+                1 => partial.row.at(partial.range.first).to_string(),
+                _ => subscript(partial.row, 0),
+            };
             line(
                 &mut out,
                 format!(
