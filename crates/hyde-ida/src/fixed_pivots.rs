@@ -34,6 +34,14 @@ pub(crate) struct Extracted {
     pub(crate) scale: Vec<f64>,
 }
 
+/// The values of the factors of one matrix.
+#[derive(Debug, Default)]
+pub(crate) struct Values {
+    pivots: Vec<f64>,
+    down: Vec<f64>,
+    up: Vec<f64>,
+}
+
 /// A row of the factors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
@@ -209,19 +217,30 @@ impl FixedPivots {
         true
     }
 
+    /// Exchanges the values for others of the same pivots, or for room where there are none.
+    pub(crate) fn exchange(&mut self, other: &mut Values) {
+        let own = [&mut self.pivots, &mut self.down.values, &mut self.up.values];
+        let others = [&mut other.pivots, &mut other.down, &mut other.up];
+        for (own, other) in own.into_iter().zip(others) {
+            other.resize(own.len(), 0.0);
+            std::mem::swap(own, other);
+        }
+    }
+
     /// Replaces `b` by the solution with the matrix factored last.
     pub(crate) fn solve(&mut self, b: &mut [f64]) {
         let x = &mut self.work[..];
         let (groups, rest) = x.as_chunks_mut::<AT_ONCE>();
         let (of_groups, of_rest) = self.equations.as_chunks();
-        for (x, equations) in groups.iter_mut().zip(of_groups) {
+        let (scales, scales_of_rest) = self.scales.as_chunks::<AT_ONCE>();
+        for ((x, equations), scales) in groups.iter_mut().zip(of_groups).zip(scales) {
             *x = equations.map(|equation| b[equation as usize]);
+            for (x, scale) in x.iter_mut().zip(scales) {
+                *x *= scale;
+            }
         }
-        for (x, &equation) in rest.iter_mut().zip(of_rest) {
-            *x = b[equation as usize];
-        }
-        for (x, scale) in x.iter_mut().zip(&self.scales) {
-            *x *= scale;
+        for ((x, &equation), scale) in rest.iter_mut().zip(of_rest).zip(scales_of_rest) {
+            *x = b[equation as usize] * scale;
         }
         for Block { down, up } in &self.blocks {
             self.down.subtract(down.clone(), x, &self.pivots);

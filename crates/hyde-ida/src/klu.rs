@@ -13,7 +13,7 @@ use sundials_sys as sys;
 // Its build script finds the library; without a use of the crate the linker would not see it.
 use suitesparse_sys as _;
 
-use crate::fixed_pivots::{Extracted, FixedPivots};
+use crate::fixed_pivots::{Extracted, FixedPivots, Values};
 use crate::interleave::interleaved;
 use crate::{Error, Pattern, Singular};
 
@@ -32,6 +32,8 @@ pub(crate) struct KluFactors {
     numeric: *mut sys::klu_l_numeric,
     /// The factors of the matrix factored last; none before the first, and where KLU's serve.
     fixed: Option<Box<FixedPivots>>,
+    /// How often pivots were chosen.
+    choices: u64,
 }
 
 /// How the pivots were found.
@@ -66,6 +68,7 @@ impl KluFactors {
             symbolic,
             numeric: ptr::null_mut(),
             fixed: None,
+            choices: 0,
         })
     }
 
@@ -95,6 +98,7 @@ impl KluFactors {
     /// Factors the matrix with these values by KLU.
     fn choose_pivots(&mut self, pattern: &Pattern, values: &[f64]) -> Result<(), Singular> {
         self.fixed = None;
+        self.choices += 1;
         self.free_numeric();
         let (starts, rows) = indices(pattern);
         // SAFETY: pattern and values belong together (checked by the caller) and are only read; `symbolic` is theirs.
@@ -114,6 +118,17 @@ impl KluFactors {
             return Err(Singular { unknown });
         }
         Ok(())
+    }
+
+    /// Exchanges the factors for those of another matrix, told by when their pivots were chosen. Returns whether there are
+    /// any: not where others were chosen since, or KLU's own factors serve, which stay.
+    pub(crate) fn exchange(&mut self, aside: &mut (u64, Values)) -> bool {
+        let chosen = std::mem::replace(&mut aside.0, 0);
+        if let Some(fixed) = &mut self.fixed {
+            fixed.exchange(&mut aside.1);
+            aside.0 = self.choices;
+        }
+        aside.0 != 0 && chosen == self.choices
     }
 
     /// Replaces `b` by the solution; the last `factor` must have succeeded.

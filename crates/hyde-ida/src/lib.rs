@@ -69,7 +69,7 @@ mod system;
 mod vector;
 
 pub use error::{Error, Failure, FailureKind};
-pub use linear::{LinearMethod, Singular, SparseSolver};
+pub use linear::{LinearMethod, SetAside, Singular, SparseSolver};
 pub use options::Options;
 pub use pattern::{Pattern, PatternError};
 pub use reading::Crossing;

@@ -1,6 +1,7 @@
 //! Linear systems with a fixed pattern: dense for a few unknowns, KLU for more.
 
 use crate::dense::DenseFactors;
+use crate::fixed_pivots::Values;
 use crate::klu::{KluFactors, Pivots};
 use crate::{Error, Pattern, Statistics};
 
@@ -27,6 +28,14 @@ pub struct SparseSolver {
     /// Whether the last `factor` succeeded.
     factored: bool,
     pub(crate) counts: FactorCounts,
+}
+
+/// Factors of a matrix that may come back: see [`SparseSolver::exchange`].
+#[derive(Debug, Default)]
+pub struct SetAside {
+    dense: Option<DenseFactors>,
+    /// When the pivots were chosen, and the values.
+    sparse: (u64, Values),
 }
 
 /// A matrix without an inverse.
@@ -106,6 +115,27 @@ impl SparseSolver {
             Pivots::Kept => self.counts.refactorizations += 1,
         }
         Ok(())
+    }
+
+    /// Exchanges the factors for others of this solver that were set aside before: none are lost, and none are copied.
+    /// Returns whether there are factors now; if not, the next matrix must be factored first.
+    ///
+    /// # Panics
+    /// If the last [`factor`](Self::factor) did not succeed.
+    pub fn exchange(&mut self, aside: &mut SetAside) -> bool {
+        self.expect_factors();
+        self.factored = match (&mut self.factors, &mut aside.dense) {
+            (Factors::Dense(own), Some(other)) => {
+                std::mem::swap(own, other);
+                true
+            }
+            (Factors::Dense(own), none) => {
+                *none = Some(own.clone());
+                false
+            }
+            (Factors::Klu(own), _) => own.exchange(&mut aside.sparse),
+        };
+        self.factored
     }
 
     /// Replaces the right side `b` by the solution, with the matrix factored last.

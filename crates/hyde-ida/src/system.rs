@@ -32,9 +32,10 @@ pub trait System {
         values: &mut [f64],
     ) -> Result<(), Recoverable>;
 
-    /// Whether `F` is affine in `y` and `y'`, with coefficients that are the same wherever a run goes on from its last start.
-    fn is_affine(&self) -> bool {
-        false
+    /// Where `F` is affine in `y` and `y'`, with coefficients that are the same wherever a run goes on from its last start: a
+    /// number that is the same as long as the coefficients are.
+    fn coefficients(&self) -> Option<u64> {
+        None
     }
 
     /// The number of root functions; asked once, when the solver is made.

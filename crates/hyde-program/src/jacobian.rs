@@ -121,6 +121,24 @@ impl Jacobian {
         }
     }
 
+    /// Each derivative times what it is by: gives the row and the product of an entry of a vector or of its rate.
+    pub fn products(
+        &self,
+        values: &[f64],
+        (by_value, by_rate): (&[f64], &[f64]),
+        mut give: impl FnMut(usize, f64),
+    ) {
+        for &(first, len, by_derivative) in &self.runs {
+            let vector = if by_derivative { by_rate } else { by_value };
+            let run = first..first + len;
+            for (&position, &value) in self.positions[run.clone()].iter().zip(&values[run]) {
+                let position = position as usize;
+                let row = usize::try_from(self.rows[position]).unwrap_or(0);
+                give(row, value * vector[self.columns[position] as usize]);
+            }
+        }
+    }
+
     /// The matrix that consistent initial conditions solve with: columns of `dF/dy'` for differential unknowns, of
     /// `dF/dy` for the others.
     pub fn assemble_consistent(&self, values: &[f64], differential: &[bool], matrix: &mut [f64]) {

@@ -9,8 +9,8 @@ use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
 use crate::singular;
 use crate::state::State;
-use hyde_ida::{LinearMethod, Pattern, Singular, SparseSolver};
-use hyde_program::{Function, Wrt};
+use hyde_ida::{LinearMethod, Pattern, Singular, SparseSolver, System};
+use hyde_program::Function;
 
 /// Newton iterations at most; halvings of a step at most.
 const MAX_ITERATIONS: usize = 50;
@@ -31,8 +31,10 @@ const MAX_SMALL_STEPS: usize = 8;
 pub(crate) struct Consistent {
     solver: Option<SparseSolver>,
     matrix: Vec<f64>,
-    /// The matrix of the factors; empty without any. Between events it often remains the same.
+    /// The matrix of the factors; empty without any. Between events it often remains the same: where the residual is affine,
+    /// as long as its coefficients do.
     factored: Vec<f64>,
+    coefficients: Option<u64>,
     residual: Vec<f64>,
     correction: Vec<f64>,
 }
@@ -50,6 +52,7 @@ impl Consistent {
             solver,
             matrix: vec![0.0; jacobian.len()],
             factored: Vec::new(),
+            coefficients: None,
             residual: vec![0.0; n],
             correction: vec![0.0; n],
         }
@@ -113,7 +116,8 @@ impl Consistent {
             let rounding = size <= ROUNDING && !smaller;
             last = size;
             let mut done = size <= 1.0 || rounding;
-            if (done || !smaller) && state.slides.is_empty() {
+            let at_once = state.coefficients().is_some();
+            if (done || !smaller || at_once) && state.slides.is_empty() {
                 let left = self.left_over_terms(state, now.at());
                 done |= left <= SOLVED;
                 small_steps += usize::from(done);
@@ -164,8 +168,7 @@ impl Consistent {
         for (right, by_time) in right.iter_mut().zip(by_time) {
             *right = -(*right + by_time);
         }
-        state.consistent_matrix(at, &mut self.matrix);
-        self.factor_matrix().ok()?;
+        self.factor_at(state, at).ok()?;
         self.solver.as_mut()?.solve(&mut right);
         for (index, value) in right.into_iter().enumerate() {
             if state.differential[index] {
@@ -188,8 +191,7 @@ impl Consistent {
         if self.solver.is_none() {
             return true;
         }
-        state.consistent_matrix(at, &mut self.matrix);
-        if self.factor_matrix().is_err() {
+        if self.factor_at(state, at).is_err() {
             return false;
         }
         if let Some(solver) = &mut self.solver {
@@ -228,23 +230,28 @@ impl Consistent {
         at: At<'_>,
         at_start: bool,
     ) -> Result<(), Box<Failure>> {
-        state.consistent_matrix(at, &mut self.matrix);
-        self.factor_matrix().map_err(|stopped| {
+        self.factor_at(state, at).map_err(|stopped| {
             singular::failure(state, &self.matrix, stopped.unknown, at, at_start)
         })
     }
 
-    /// Factors the matrix, unless the factors are its own.
-    fn factor_matrix(&mut self) -> Result<(), Singular> {
+    /// Factors the matrix at a point, unless the factors are its own.
+    fn factor_at(&mut self, state: &mut State<'_>, at: At<'_>) -> Result<(), Singular> {
         let Some(solver) = &mut self.solver else {
             return Ok(());
         };
-        if self.factored == self.matrix {
+        let coefficients = state.coefficients_at(at);
+        if coefficients.is_some() && coefficients == self.coefficients {
             return Ok(());
         }
-        self.factored.clear();
-        solver.factor(&self.matrix)?;
-        self.factored.extend_from_slice(&self.matrix);
+        state.consistent_matrix(at, &mut self.matrix);
+        if self.factored != self.matrix {
+            self.coefficients = None;
+            self.factored.clear();
+            solver.factor(&self.matrix)?;
+            self.factored.extend_from_slice(&self.matrix);
+        }
+        self.coefficients = coefficients;
         Ok(())
     }
 
@@ -301,15 +308,9 @@ impl Consistent {
     /// factorisation.
     fn left_over_terms(&self, state: &State<'_>, at: At<'_>) -> f64 {
         let mut terms = vec![0.0; self.residual.len()];
-        let entries = state.program.partials(Function::Residual);
-        for (entry, value) in entries.iter().zip(&state.partials) {
-            let factor = match entry.wrt {
-                Wrt::Unknown(column) => at.y[column],
-                Wrt::Derivative(column) => at.yp[column],
-                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => 0.0,
-            };
-            terms[entry.row] += (value * factor).abs();
-        }
+        let add = |row: usize, term: f64| terms[row] += term.abs();
+        let jacobian = state.program.jacobian();
+        jacobian.products(state.partials.values(), (at.y, at.yp), add);
         let rows = self.residual.iter().zip(terms);
         rows.filter(|(left, _)| left.abs() > 0.0)
             .fold(0.0, |most: f64, (left, terms)| most.max(left.abs() / terms))

@@ -17,7 +17,7 @@ const PART_OF_RETURN: f64 = 0.02;
 
 /// What bounds the first step, in s.
 pub(crate) struct FirstStep {
-    /// A step of order 1 is as exact as the tolerance asks.
+    /// A step of order 1 is as exact as the tolerance asks, and a small part of what is left of the run.
     pub(crate) by_curvature_s: f64,
     /// Longer ones may step over what has just begun.
     pub(crate) longest_s: f64,
@@ -34,7 +34,7 @@ pub(crate) fn first_step(
     let span = (setup.stop_s - t).max(1e-12);
     let now = integrator.now.clone();
     let flow = consistent.flow(integrator.state_mut(), now.at());
-    let (mut by_curvature_s, mut longest_s) = (f64::INFINITY, 1e-2 * span);
+    let (mut by_curvature_s, mut longest_s) = (1e-2 * span, f64::INFINITY);
     if let Some((dy, dyp)) = flow {
         for (index, slope) in dy.iter().enumerate() {
             if !integrator.state().differential[index] && slope.is_finite() {
@@ -49,10 +49,10 @@ pub(crate) fn first_step(
         }
         let norm = (square / now.y.len().max(1) as f64).sqrt();
         if norm.is_finite() && norm > 0.0 {
-            by_curvature_s = (0.5 / norm).sqrt();
+            by_curvature_s = by_curvature_s.min((0.5 / norm).sqrt());
         }
         let back = shortest_return(integrator.state_mut(), now.at(), (&dy, &dyp));
-        longest_s = longest_s.min(PART_OF_RETURN * back);
+        longest_s = PART_OF_RETURN * back;
     }
     let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
     FirstStep {

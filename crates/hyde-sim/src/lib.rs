@@ -42,6 +42,7 @@ mod operating_point;
 mod reached;
 mod reductions;
 mod released;
+mod residual_partials;
 mod results;
 mod root_rates;
 mod runge_kutta;

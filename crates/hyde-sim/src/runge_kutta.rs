@@ -7,6 +7,7 @@
 //! their equations there, and what is infinitely stiff is damped out at once ([`tableau`]). The step follows the estimated
 //! errors ([`step_size`]), but is kept while it is nearly right, for each new one takes a factorization.
 
+mod factors;
 mod lanes;
 mod passes;
 mod stages;
@@ -14,7 +15,8 @@ mod step_size;
 mod tableau;
 
 use crate::moment::At;
-use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
+pub(crate) use factors::Factors;
+use hyde_ida::{Error, Failure, FailureKind, Statistics, System};
 use lanes::Lanes;
 use passes::{correct, inside, keep_largest, weights};
 use stages::Obstacle;
@@ -24,6 +26,8 @@ use tableau::{BUBBLE, GAMMA, STAGES};
 /// So many steps at most before a stop are made to fit; and how much longer they might be without being so.
 const MOST_FITTED: f64 = 8.0;
 const SERVES: f64 = 1.25;
+/// Lengths that are to come back are so many in each octave.
+const RUNGS: f64 = 4.0;
 /// What an obstacle other than the error makes of a step.
 const RETREAT: f64 = 0.25;
 /// A correction of the interpolant that is no more of the tolerance leaves the solution.
@@ -36,12 +40,10 @@ const LAST: usize = STAGES - 1;
 /// A solver of one system, standing at the end of a step. Time runs forward.
 pub(crate) struct RungeKutta<S> {
     system: S,
-    linear: SparseSolver,
+    factors: Factors,
     /// Factors for the steps to rows: what rows are asked for must not change the run.
-    for_rows: Option<SparseSolver>,
+    for_rows: Option<Factors>,
     matrix: Vec<f64>,
-    /// The step, in s, that the factors are for; none if they are of no use.
-    factored_s: Option<f64>,
     /// Whether the factors are of the point where the step begins.
     fresh: bool,
     /// What an iteration of Newton's method leaves of the error, as last measured.
@@ -80,13 +82,13 @@ impl<S: System> RungeKutta<S> {
     /// where they are `watched`.
     pub(crate) fn new(
         system: S,
-        linear: SparseSolver,
+        factors: Factors,
         differential: Vec<bool>,
         watched: bool,
         max_step_s: f64,
         At { t, y, yp }: At<'_>,
     ) -> Self {
-        let (n, entries) = (linear.pattern().n(), linear.pattern().n_entries());
+        let (n, entries) = (factors.pattern().n(), factors.pattern().n_entries());
         let mut slopes = vec![Lanes::zeros(n); STAGES];
         slopes[LAST].copy_from_slice(yp);
         let mut largest = Lanes::from(y);
@@ -95,10 +97,9 @@ impl<S: System> RungeKutta<S> {
         let count = counts.iter().filter(|counts| **counts).count();
         Self {
             system,
-            linear,
+            factors,
             for_rows: None,
             matrix: vec![0.0; entries],
-            factored_s: None,
             fresh: false,
             contraction: None,
             rtol: 0.0,
@@ -155,15 +156,18 @@ impl<S: System> RungeKutta<S> {
         self.atol.copy_from_slice(atol);
     }
 
-    /// Goes on from other values, or with other equations, with the step it had or this one (in s) if that is shorter.
-    pub(crate) fn restart(&mut self, At { t, y, yp }: At<'_>, first_step_s: f64) {
+    /// Goes on from other values, or with other equations, with the step it had or a shorter one, as the curvature asks that
+    /// allows a method of order 1 this step (in s), and no longer one than so.
+    pub(crate) fn restart(&mut self, At { t, y, yp }: At<'_>, by_curvature_s: f64, longest_s: f64) {
         self.t = t;
         self.y.copy_from_slice(y);
         self.slopes[LAST].copy_from_slice(yp);
-        self.next_step_s = self.next_step_s.min(first_step_s);
-        // The factors may serve on: where only a held value has changed they do. The contraction tells.
-        self.contraction = None;
-        self.step_size.forget();
+        let first_s = self.step_size.first(by_curvature_s);
+        self.next_step_s = self.next_step_s.min(first_s).min(longest_s);
+        // The factors may serve on: where only a held value has changed they do. The contraction tells of the others.
+        if !self.factors.are_of(self.system.coefficients()) {
+            self.contraction = None;
+        }
         self.statistics.restarts += 1;
     }
 
@@ -195,14 +199,21 @@ impl<S: System> RungeKutta<S> {
     fn fitting(&self, wanted: f64, left: f64) -> f64 {
         let count = left / wanted;
         if count > MOST_FITTED {
-            return wanted;
+            return match self.factors.come_back() {
+                true => on_ladder(wanted),
+                false => wanted,
+            };
         }
-        if let Some(last) = self.factored_s {
-            let count = (left / last).round();
-            let fits = (left - count * last).abs() <= 1e-9 * left;
-            if fits && count >= 1.0 && last <= wanted * (1.0 + 1e-9) && wanted <= SERVES * last {
-                return left / count;
-            }
+        let lengths = self.factors.lengths_s(self.system.coefficients());
+        let serving = lengths.filter_map(|length| {
+            let count = (left / length).round();
+            let fits = (left - count * length).abs() <= 1e-9 * left;
+            let serves = length <= wanted * (1.0 + 1e-9) && wanted <= SERVES * length;
+            (fits && serves && count >= 1.0).then_some(count)
+        });
+        let fewest = serving.fold(f64::INFINITY, f64::min);
+        if fewest.is_finite() {
+            return left / fewest;
         }
         left / (count * (1.0 - 1e-9)).ceil().max(1.0)
     }
@@ -288,15 +299,13 @@ impl<S: System> RungeKutta<S> {
     /// The end of a step as long as to `t`. Whether there is one. The factors of the run remain as they are.
     fn step_to(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
         let for_rows = self.for_rows.take();
-        let for_rows = for_rows.map_or_else(
-            || SparseSolver::new(self.linear.pattern().clone(), LinearMethod::Auto),
-            Ok,
-        );
+        let for_rows = for_rows.map_or_else(|| self.factors.empty(), Ok);
         let Ok(mut for_rows) = for_rows else {
             return false;
         };
-        let of_run = (self.factored_s.take(), self.contraction.take(), self.smooth);
-        std::mem::swap(&mut self.linear, &mut for_rows);
+        let of_run = (self.contraction.take(), self.smooth);
+        for_rows.forget();
+        std::mem::swap(&mut self.factors, &mut for_rows);
         std::mem::swap(&mut self.slopes, &mut self.others);
         self.slopes[0].copy_from_slice(&self.others[0]);
         let reached = self.attempt(t - self.from).is_ok();
@@ -305,16 +314,16 @@ impl<S: System> RungeKutta<S> {
             yp.copy_from_slice(&self.slopes[LAST]);
         }
         std::mem::swap(&mut self.slopes, &mut self.others);
-        std::mem::swap(&mut self.linear, &mut for_rows);
+        std::mem::swap(&mut self.factors, &mut for_rows);
         self.for_rows = Some(for_rows);
-        (self.factored_s, self.contraction, self.smooth) = of_run;
+        (self.contraction, self.smooth) = of_run;
         reached
     }
 
     /// The interpolant, corrected once by Newton's method with the factors of the step. Whether the correction is so small
     /// that this is the solution to the tolerance of the step.
     fn corrected(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
-        let Some(h) = self.factored_s.filter(|h| self.is_length(*h)) else {
+        let Some(h) = self.factors.step_s().filter(|h| self.is_length(*h)) else {
             return false;
         };
         self.interpolate(t, y, yp);
@@ -323,7 +332,7 @@ impl<S: System> RungeKutta<S> {
         if evaluated.is_err() {
             return false;
         }
-        self.linear.solve(&mut self.correction);
+        self.factors.solve(&mut self.correction);
         self.stage.copy_from_slice(y);
         self.base.copy_from_slice(yp);
         let square = correct(
@@ -361,6 +370,12 @@ impl<S: System> RungeKutta<S> {
         let ends = (&self.before, &self.y);
         inside(y, yp, ends, rise, (&self.slopes, &shares));
     }
+}
+
+/// The longest of the lengths in s that are to come back that is no longer than this one.
+fn on_ladder(length_s: f64) -> f64 {
+    let rung = (RUNGS * length_s.log2() + 1e-9).floor();
+    (rung / RUNGS).exp2()
 }
 
 #[cfg(test)]

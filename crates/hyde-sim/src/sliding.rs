@@ -193,7 +193,7 @@ impl State<'_> {
         let weights = self.weights(at);
         self.mean(&weights, &mut |state| {
             state.residual_partials(at);
-            state.partials.clone()
+            state.partials.values().to_vec()
         })
     }
 
@@ -318,7 +318,7 @@ impl State<'_> {
         let mut sizes = vec![f64::MIN_POSITIVE; at.y.len()];
         self.residual_partials(at);
         let entries = self.program.partials(Function::Residual);
-        for (entry, value) in entries.iter().zip(&self.partials) {
+        for (entry, value) in entries.iter().zip(self.partials.values()) {
             let counts = match entry.wrt {
                 Wrt::Unknown(column) => !self.differential[column],
                 Wrt::Derivative(column) => self.differential[column],

@@ -4,10 +4,10 @@ use crate::creeping::Creeping;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::FirstStep;
 use crate::moment::{At, Moment};
-use crate::runge_kutta::RungeKutta;
+use crate::runge_kutta::{Factors, RungeKutta};
 use crate::setup::Setup;
 use crate::state::State;
-use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, SparseSolver, Statistics};
+use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, Statistics};
 use hyde_program::{Method, Program, Relation, RelationUse, Target};
 
 /// A solver that owns the state.
@@ -35,10 +35,6 @@ pub(crate) struct Multistep<'a> {
     watched: bool,
     max_step_s: f64,
 }
-
-/// Of the step that is right for order 1, how many times it a Runge-Kutta method may begin with (measured on axes with a
-/// clock: between 10 and 100 it makes little difference, and a step too long is only taken again).
-const LONGER_FIRST_STEP: f64 = 40.0;
 
 /// Of the tolerance, what a step of IDA is given: so the instants of events are as exact as the tolerance, as they are in a
 /// program written by hand, whose unknowns are states alone (backlash: 1.3e-5 s at rtol 1e-6 without it, 6e-6 s with it).
@@ -114,9 +110,10 @@ impl<'a> Solver<'a> {
         let max_step_s = setup.max_step_s.min(state.inputs.max_step_s()).min(stride);
         let atol = vec![setup.atol; program.n_unknowns];
         if method(program, setup.method) == Method::Esdirk {
-            let linear = SparseSolver::new(pattern, LinearMethod::Auto).map_err(failed)?;
+            let ticks = !program.clocks.is_empty();
+            let factors = Factors::new(pattern, ticks).map_err(failed)?;
             let states = state.differential.clone();
-            let mut solver = RungeKutta::new(state, linear, states, !states_alone, max_step_s, at);
+            let mut solver = RungeKutta::new(state, factors, states, !states_alone, max_step_s, at);
             solver.set_tolerances(setup.rtol, &atol);
             return Ok(Self::RungeKutta(Box::new(solver)));
         }
@@ -176,9 +173,9 @@ impl<'a> Solver<'a> {
         if selected || begins || !multistep.creeping.seen(&multistep.ida) {
             return Ok(false);
         }
-        let linear = SparseSolver::new(multistep.pattern.clone(), LinearMethod::Auto)?;
+        let factors = Factors::new(multistep.pattern.clone(), false)?;
         replace_with::replace_with_or_abort(self, |solver| match solver {
-            Self::Ida(multistep) => Self::RungeKutta(Box::new(multistep.one_step(linear, at))),
+            Self::Ida(multistep) => Self::RungeKutta(Box::new(multistep.one_step(factors, at))),
             other @ (Self::Nothing { .. } | Self::RungeKutta(_)) => other,
         });
         Ok(true)
@@ -260,8 +257,7 @@ impl<'a> Solver<'a> {
                 ida.reinit(at.t, at.y, at.yp, Some(step_s))
             }
             Self::RungeKutta(solver) => {
-                let step_s = LONGER_FIRST_STEP * first.by_curvature_s;
-                solver.restart(at, step_s.min(first.longest_s));
+                solver.restart(at, first.by_curvature_s, first.longest_s);
                 Ok(())
             }
         }
@@ -296,14 +292,14 @@ impl<'a> Solver<'a> {
 
 impl<'a> Multistep<'a> {
     /// The one-step method, at the point where IDA stands, with its counts.
-    fn one_step(self, linear: SparseSolver, at: At<'_>) -> RungeKutta<State<'a>> {
+    fn one_step(self, factors: Factors, at: At<'_>) -> RungeKutta<State<'a>> {
         let (counts, step_s) = (self.ida.statistics(), self.ida.last_step_s());
         let state = self.ida.into_system();
         let states = state.differential.clone();
         let longest_s = self.max_step_s;
-        let mut solver = RungeKutta::new(state, linear, states, self.watched, longest_s, at);
+        let mut solver = RungeKutta::new(state, factors, states, self.watched, longest_s, at);
         solver.set_tolerances(self.rtol, &self.atol);
-        solver.restart(at, LONGER_FIRST_STEP * step_s);
+        solver.restart(at, step_s, f64::INFINITY);
         solver.count_on(counts);
         solver
     }

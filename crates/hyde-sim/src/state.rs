@@ -6,6 +6,7 @@ use crate::foreign::ForeignInstances;
 use crate::inputs::Inputs;
 use crate::moment::{At, Moment};
 use crate::released::Released;
+use crate::residual_partials::ResidualPartials;
 use crate::setup::Setup;
 use crate::sliding::{Slide, Surface};
 use hyde_ida::{Recoverable, System};
@@ -23,8 +24,7 @@ pub(crate) struct State<'a> {
     pub(crate) delays: Delays,
     u: Vec<f64>,
     workspace: Workspace,
-    /// Values of the residual's derivatives, before they are put in their places.
-    pub(crate) partials: Vec<f64>,
+    pub(crate) partials: ResidualPartials,
     /// States that the current modes fix, with their values.
     pub(crate) pinned: Vec<(usize, f64)>,
     /// The value of each guard's root function of states where it became true last: its zero as far as it could be located.
@@ -56,7 +56,7 @@ impl<'a> State<'a> {
             delays: Delays::new(program, setup.start_s),
             u: vec![0.0; 2 * program.columns.len() + program.delays.len()],
             workspace: Workspace::new(program.n_work),
-            partials: vec![0.0; program.partials(Function::Residual).len()],
+            partials: ResidualPartials::zeros(program.partials(Function::Residual).len()),
             pinned: Vec::new(),
             located: Vec::new(),
             doubtful: Vec::new(),
@@ -228,9 +228,11 @@ impl<'a> State<'a> {
     /// The matrix that consistent values are solved with.
     pub(crate) fn consistent_matrix(&mut self, at: At<'_>, matrix: &mut [f64]) {
         self.mean_residual_partials(at);
-        self.program
-            .jacobian()
-            .assemble_consistent(&self.partials, &self.differential, matrix);
+        self.program.jacobian().assemble_consistent(
+            self.partials.values(),
+            &self.differential,
+            matrix,
+        );
         if !self.slides.is_empty() {
             self.exchange_rows(at, matrix);
         }
@@ -240,21 +242,9 @@ impl<'a> State<'a> {
     pub(crate) fn directional(&mut self, at: At<'_>, dy: &[f64], dyp: &[f64], out: &mut [f64]) {
         self.mean_residual_partials(at);
         out.iter_mut().for_each(|value| *value = 0.0);
-        for (entry, &value) in self
-            .program
-            .partials(Function::Residual)
-            .iter()
-            .zip(&self.partials)
-        {
-            match entry.wrt {
-                hyde_program::Wrt::Unknown(column) => out[entry.row] += value * dy[column],
-                hyde_program::Wrt::Derivative(column) => out[entry.row] += value * dyp[column],
-                hyde_program::Wrt::Parameter(_)
-                | hyde_program::Wrt::Memory(_)
-                | hyde_program::Wrt::Delayed(_)
-                | hyde_program::Wrt::Time => {}
-            }
-        }
+        let jacobian = self.program.jacobian();
+        let add = |row: usize, product: f64| out[row] += product;
+        jacobian.products(self.partials.values(), (dy, dyp), add);
         if !self.slides.is_empty() {
             self.exchange_in(at, dy, out);
         }
@@ -317,15 +307,20 @@ impl<'a> State<'a> {
         if self.slides.is_empty() {
             self.residual_partials(at);
         } else {
-            self.partials = self.sliding_partials(at);
+            let values = self.sliding_partials(at);
+            self.partials.take(values, None);
         }
     }
 
     pub(crate) fn residual_partials(&mut self, at: At<'_>) {
+        let affine = self.is_affine();
+        if affine && self.partials.are_of(&self.z, &self.p) {
+            return;
+        }
         self.read_continuous(at.t);
         self.read_loose(at);
         let program = self.program;
-        let mut values = std::mem::take(&mut self.partials);
+        let mut values = self.partials.room();
         let (point, workspace) = self.point(at);
         program
             .kernels
@@ -337,7 +332,23 @@ impl<'a> State<'a> {
                 kernels.partials(Function::Residual, point, workspace, &mut values);
             });
         }
-        self.partials = values;
+        let of = affine.then_some((self.z.as_slice(), self.p.as_slice()));
+        self.partials.take(values, of);
+    }
+
+    /// The coefficients of an affine residual (see [`System::coefficients`]) and the choice of states at a point; none where
+    /// states may be chosen anew.
+    pub(crate) fn coefficients_at(&mut self, at: At<'_>) -> Option<u64> {
+        if !self.is_affine() || !self.program.selections.is_empty() {
+            return None;
+        }
+        self.residual_partials(at);
+        self.coefficients()
+    }
+
+    /// Whether the residual is affine where the run is: its derivatives follow from memory and parameters.
+    fn is_affine(&self) -> bool {
+        self.program.affine && self.slides.is_empty() && self.loose.is_empty()
     }
 
     /// The model at a point, with the room that kernels work in.
@@ -355,15 +366,23 @@ impl<'a> State<'a> {
     }
 }
 
-/// Whether all values are finite: what is not, times 0, is not 0.
+/// Whether all values are finite: what is not, times 0, is not 0. Several sums at once, for each waits for its last term.
 #[inline]
 fn all_finite(values: &[f64]) -> bool {
-    values.iter().fold(0.0, |sum, value| sum + 0.0 * value) == 0.0
+    let (groups, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for group in groups {
+        for (sum, value) in sums.iter_mut().zip(group) {
+            *sum += 0.0 * value;
+        }
+    }
+    let all = sums.iter().chain(rest);
+    all.fold(0.0, |sum, value| sum + 0.0 * value) == 0.0
 }
 
 impl System for State<'_> {
-    fn is_affine(&self) -> bool {
-        self.program.affine && self.slides.is_empty() && self.loose.is_empty()
+    fn coefficients(&self) -> Option<u64> {
+        self.is_affine().then(|| self.partials.changes())
     }
 
     fn residual(
@@ -393,7 +412,7 @@ impl System for State<'_> {
         self.mean_residual_partials(at);
         self.program
             .jacobian()
-            .assemble(&self.partials, 1.0, cj, values);
+            .assemble(self.partials.values(), 1.0, cj, values);
         if !self.slides.is_empty() {
             self.exchange_rows(at, values);
         }

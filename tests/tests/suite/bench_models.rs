@@ -96,6 +96,21 @@ fn a_sampled_loop_ends_where_the_reference_ends() {
     assert!((found[1] + 0.066_851_396).abs() < 1e-3, "{}", found[1]);
 }
 
+/// From tick to tick the same few lengths of steps come back, and with them their factors.
+#[test]
+fn a_sampled_loop_is_factored_less_often_than_it_ticks() {
+    let example = Example::load(
+        format!("{FOLDER}/controlled_shaft.hyde"),
+        Some("positioned"),
+    );
+    let example = example.unwrap().set("Ts", 1e-3);
+    let (_, run) = example.run().unwrap();
+    let counts = &run.results.statistics;
+    assert_eq!(counts.ticks, 1000);
+    assert!(counts.jacobian_evaluations < 200, "{counts:?}");
+    assert!(counts.steps < 4000, "{counts:?}");
+}
+
 fn event_times(file: &str, experiment: &str) -> Vec<f64> {
     let example = Example::load(format!("{FOLDER}/{file}"), Some(experiment)).unwrap();
     let (_, run) = example.run().unwrap();

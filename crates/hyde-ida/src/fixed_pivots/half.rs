@@ -204,7 +204,7 @@ impl Half {
         for run in &self.runs[runs.start as usize..runs.end as usize] {
             match &run.alike {
                 Some(alike) => match *alike.distances {
-                    [] => self.run(run, alike, [], x, pivots),
+                    [] => self.diagonal(run, x, pivots),
                     [a] => self.run(run, alike, [a], x, pivots),
                     [a, b] => self.run(run, alike, [a, b], x, pivots),
                     [a, b, c] => self.run(run, alike, [a, b, c], x, pivots),
@@ -244,20 +244,19 @@ impl Half {
     ) {
         let length = run.length as usize;
         let at = |place: u32| x[place as usize..][..length].as_chunks::<W>().0;
-        let read = distances.map(|distance| at(run.first.wrapping_add_signed(distance)));
         let own = at(run.first);
-        let pivots = pivots[run.first as usize..][..length].as_chunks::<W>().0;
+        // All slices have the length of the first: so the compiler sees that no index leaves one.
+        let read =
+            distances.map(|distance| &at(run.first.wrapping_add_signed(distance))[..own.len()]);
+        let pivots = &pivots[run.first as usize..][..length].as_chunks::<W>().0[..own.len()];
         let entries = &self.values[run.begin as usize..][..N * length];
-        let mut entries = entries.as_chunks::<W>().0;
+        let entries = entries.as_chunks::<W>().0.as_chunks::<N>().0;
         let values = |cells: &[Cell<f64>; W]| cells.each_ref().map(Cell::get);
         let start = if self.upward { own.len() - 1 } else { 0 };
-        let mut before = read.last().map_or([0.0; W], |read| values(&read[start]));
-        for nth in 0..own.len() {
-            let group = start.abs_diff(nth);
+        let mut before = values(&read[N - 1][start]);
+        let mut subtract = |group: usize, entries: &[[f64; W]; N], pivots: Option<&[f64; W]>| {
             let mut value = values(&own[group]);
-            let (of_group, others) = entries.split_at(N);
-            entries = others;
-            for (at, (entries, read)) in of_group.iter().zip(&read).enumerate() {
+            for (at, (entries, read)) in entries.iter().zip(&read).enumerate() {
                 let read = match CHAIN && at + 1 == N {
                     true => before,
                     false => values(&read[group]),
@@ -266,15 +265,33 @@ impl Half {
                     *value -= entry * read;
                 }
             }
-            if self.upward {
-                for (value, pivot) in value.iter_mut().zip(&pivots[group]) {
-                    *value *= pivot;
-                }
+            for (value, pivot) in value.iter_mut().zip(pivots.into_iter().flatten()) {
+                *value *= pivot;
             }
             for (own, value) in own[group].iter().zip(value) {
                 own.set(value);
             }
             before = value;
+        };
+        if self.upward {
+            for (group, entries) in (0..own.len()).rev().zip(entries) {
+                subtract(group, entries, Some(&pivots[group]));
+            }
+        } else {
+            for (group, entries) in (0..own.len()).zip(entries) {
+                subtract(group, entries, None);
+            }
+        }
+    }
+
+    /// Rows that read nothing.
+    fn diagonal(&self, run: &Run, x: &[Cell<f64>], pivots: &[f64]) {
+        if !self.upward {
+            return;
+        }
+        let places = run.first as usize..(run.first + run.length) as usize;
+        for (own, pivot) in x[places.clone()].iter().zip(&pivots[places]) {
+            own.set(own.get() * pivot);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The linear solver on its own, dense and sparse.
 
-use hyde_ida::{LinearMethod, Pattern, SparseSolver};
+use hyde_ida::{LinearMethod, Pattern, SetAside, SparseSolver};
 
 const METHODS: [LinearMethod; 2] = [LinearMethod::Dense, LinearMethod::Klu];
 
@@ -208,5 +208,39 @@ fn sparse_factors_solve_what_dense_ones_solve() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn factors_set_aside_solve_again_without_another_factorization() {
+    for (n, method) in [(5, LinearMethod::Dense), (40, LinearMethod::Klu)] {
+        let pattern = bordered_chain(n);
+        let mut solver = SparseSolver::new(pattern.clone(), method).unwrap();
+        let mut numbers = Numbers(n as u64);
+        // Diagonally dominant, so that the pivots of the first serve for the second.
+        let mut matrix = || -> Vec<f64> {
+            let mut value =
+                |row, column| numbers.next().unwrap() + if row == column { 50.0 } else { 0.0 };
+            let entries = pattern.entries();
+            entries.map(|(row, column, _)| value(row, column)).collect()
+        };
+        let (first, second) = (matrix(), matrix());
+        let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
+        let assert_solves = |solver: &mut SparseSolver, matrix: &[f64]| {
+            let mut b = product(&pattern, matrix, &x);
+            solver.solve(&mut b);
+            for (found, expected) in b.iter().zip(&x) {
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+            }
+        };
+        let mut aside = SetAside::default();
+        solver.factor(&first).unwrap();
+        assert!(!solver.exchange(&mut aside), "nothing was set aside before");
+        solver.factor(&second).unwrap();
+        assert_solves(&mut solver, &second);
+        assert!(solver.exchange(&mut aside));
+        assert_solves(&mut solver, &first);
+        assert!(solver.exchange(&mut aside));
+        assert_solves(&mut solver, &second);
     }
 }

@@ -50,13 +50,13 @@ impl<S: System> RungeKutta<S> {
     pub(super) fn attempt(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
         self.fresh = false;
         loop {
-            if !self.is_factored(h) {
+            if !self.factors.are_for(h, self.system.coefficients()) {
                 self.factor(h)?;
             }
             match self.stages(h) {
                 Ok(()) => break,
                 Err(obstacle) => {
-                    self.factored_s = None;
+                    self.factors.forget();
                     self.contraction = None;
                     if self.fresh {
                         return Err(obstacle);
@@ -65,30 +65,22 @@ impl<S: System> RungeKutta<S> {
             }
         }
         if self.contraction.is_some_and(|rate| rate > SLOW) && !self.fresh {
-            self.factored_s = None;
+            self.factors.forget();
         }
         self.error(h)
     }
 
-    /// Whether the factors are for steps of this length, but for rounding.
-    fn is_factored(&self, h: f64) -> bool {
-        self.factored_s
-            .is_some_and(|factored| (factored - h).abs() <= 1e-9 * h)
-    }
-
     fn factor(&mut self, h: f64) -> Result<(), Obstacle> {
         self.statistics.jacobian_evaluations += 1;
-        self.factored_s = None;
         let cj = 1.0 / (GAMMA * h);
         let (y, yp) = (&self.before, &self.slopes[0]);
         let evaluated = self.system.jacobian(self.from, cj, y, yp, &mut self.matrix);
         if evaluated.is_err() || self.matrix.iter().any(|entry| !entry.is_finite()) {
             return Err(Obstacle::Jacobian);
         }
-        self.linear
-            .factor(&self.matrix)
+        self.factors
+            .factor(h, self.system.coefficients(), &self.matrix)
             .map_err(|singular| Obstacle::Singular(singular.unknown))?;
-        self.factored_s = Some(h);
         self.fresh = true;
         Ok(())
     }
@@ -136,7 +128,7 @@ impl<S: System> RungeKutta<S> {
                 let row = self.correction.iter().position(|value| !value.is_finite());
                 return Err(Obstacle::Residual(row));
             }
-            self.linear.solve(&mut self.correction);
+            self.factors.solve(&mut self.correction);
             let square = correct(
                 (&mut self.stage, slope),
                 &self.correction,
@@ -159,7 +151,8 @@ impl<S: System> RungeKutta<S> {
                     return Ok(0.0);
                 }
             }
-            let measures = i + 1 == STAGES && iteration == 0 && !self.system.is_affine();
+            let measures =
+                i + 1 == STAGES && iteration == 0 && self.system.coefficients().is_none();
             let converged = self
                 .contraction
                 .is_some_and(|rate| rate < TOO_SLOW && rate * size <= LEFT * (1.0 - rate));
@@ -204,7 +197,7 @@ impl<S: System> RungeKutta<S> {
         self.system
             .residual(self.from + h, &self.stage, &self.base, &mut self.correction)
             .map_err(|_| Obstacle::Residual(None))?;
-        self.linear.solve(&mut self.correction);
+        self.factors.solve(&mut self.correction);
         let error = (sum_of_squares(&self.correction, &self.counted) / self.count).sqrt();
         if !error.is_finite() {
             return Err(Obstacle::Residual(None));

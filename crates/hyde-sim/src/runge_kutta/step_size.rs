@@ -27,24 +27,50 @@ const KEEP: std::ops::Range<f64> = 0.9..1.2;
 /// Errors below this tell no more than this one.
 const LEAST: f64 = 1e-10;
 
+/// Of the step that is right for order 1, how many times it the first one is before any was tried (measured on axes with a
+/// clock: between 10 and 100 it makes little difference, and a step too long is only taken again).
+const LONGER_FIRST_STEP: f64 = 40.0;
+
 /// What the choice of the next step remembers.
-#[derive(Default)]
 pub(super) struct StepSize {
+    /// Of the step that is right for order 1, how many times it the first one is, and its length in s while it is to come.
+    longer: f64,
+    first_s: Option<f64>,
     /// The last accepted step in s, and its error in units of the tolerance; none while steps grow from a new start.
     last: Option<(f64, f64)>,
 }
 
+impl Default for StepSize {
+    fn default() -> Self {
+        Self {
+            longer: LONGER_FIRST_STEP,
+            first_s: None,
+            last: None,
+        }
+    }
+}
+
 impl StepSize {
-    /// The errors before say nothing of what comes.
-    pub(super) fn forget(&mut self) {
+    /// The first step in s where a run starts anew, from the one that is right for order 1. The errors before say nothing of
+    /// what comes; those of earlier first steps do.
+    pub(super) fn first(&mut self, by_curvature_s: f64) -> f64 {
         self.last = None;
+        let first_s = self.longer * by_curvature_s;
+        self.first_s = Some(first_s).filter(|first_s| first_s.is_finite());
+        first_s
     }
 
     /// The step in s after one of `step` s with this error of at most 1; no longer where an attempt at it had failed.
     pub(super) fn after(&mut self, step: f64, error: f64, failed: bool) -> f64 {
         let error = error.max(LEAST);
+        let right = (SAFETY * error.powf(-1.0 / ORDER)).clamp(SHRINK, GROW);
+        if let Some(first_s) = self.first_s.take()
+            && (failed || step > first_s / KEEP.end)
+        {
+            self.longer *= (step * right / first_s).sqrt();
+        }
         let factor = match self.last {
-            None => SAFETY * error.powf(-1.0 / ORDER),
+            None => right,
             Some((step_before, before)) => {
                 (error * before).powf(-1.0 / (B * ORDER)) * (step / step_before).powf(-1.0 / B)
             }
@@ -111,7 +137,7 @@ mod tests {
     fn after_a_new_start_the_step_follows_the_error_alone() {
         let mut size = StepSize::default();
         size.after(1.0, 0.5, false);
-        size.forget();
+        size.first(f64::INFINITY);
         assert!((size.after(1.0, 1e-9, false) - GROW).abs() < 1e-12);
     }
 }

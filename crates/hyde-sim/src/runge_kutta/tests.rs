@@ -144,11 +144,11 @@ fn solver<S: System + States>(
     max_step_s: f64,
 ) -> RungeKutta<S> {
     let (n, pattern) = (y.len(), Pattern::dense(y.len()).expect("of some unknowns"));
-    let linear = SparseSolver::new(pattern, LinearMethod::Auto).expect("a small system");
+    let factors = Factors::new(pattern, false).expect("a small system");
     let (states, start) = (S::STATES.to_vec(), At { t: 0.0, y, yp });
-    let mut solver = RungeKutta::new(system, linear, states, true, max_step_s, start);
+    let mut solver = RungeKutta::new(system, factors, states, true, max_step_s, start);
     solver.set_tolerances(rtol, &vec![1e-2 * rtol; n]);
-    solver.restart(start, 1e-3f64.min(max_step_s));
+    solver.restart(start, f64::INFINITY, 1e-3f64.min(max_step_s));
     solver
 }
 
@@ -167,7 +167,7 @@ fn oscillation(step_s: f64) -> (f64, f64) {
         y: &[0.0, 1.0],
         yp: &[1.0, 0.0],
     };
-    solver.restart(start, step_s);
+    solver.restart(start, f64::INFINITY, step_s);
     solver.next_step_s = step_s;
     run(&mut solver, 4.0);
     let y = solver.end().y;
@@ -179,7 +179,7 @@ fn oscillation(step_s: f64) -> (f64, f64) {
         y: &[x, v],
         yp: &[v, -x],
     };
-    solver.restart(exact, step_s);
+    solver.restart(exact, f64::INFINITY, step_s);
     solver.next_step_s = step_s;
     solver.step(1.0 + step_s).expect("a step");
     let (mut y, mut yp) = ([0.0; 2], [0.0; 2]);

@@ -216,8 +216,8 @@ impl Sensitivities {
             }
             state.residual_partials(then.at());
             let propagator = &mut self.propagator;
-            jacobian.assemble(&state.partials, 1.0, 0.0, &mut propagator.by_value);
-            jacobian.assemble(&state.partials, 0.0, 1.0, &mut propagator.by_rate);
+            jacobian.assemble(state.partials.values(), 1.0, 0.0, &mut propagator.by_value);
+            jacobian.assemble(state.partials.values(), 0.0, 1.0, &mut propagator.by_rate);
             propagator.place_stage(stage, step_s, &differential);
         }
         let Propagator {
