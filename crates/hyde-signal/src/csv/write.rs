@@ -99,25 +99,27 @@ fn header_cell(column: &Written<'_>) -> String {
 
 /// The shortest digits, as `{:?}` has them; `1.0` is cut to `1`.
 fn push_number(text: &mut String, value: f64) {
-    // `zmij` is quicker, but writes these without a power of ten.
-    if (1e-6..1e-4).contains(&value.abs()) {
+    let mut buffer = zmij::Buffer::new();
+    let number = buffer.format(value);
+    let size = value.abs();
+    if (1e-4..1e16).contains(&size) || size == 0.0 {
+        text.push_str(number.strip_suffix(".0").unwrap_or(number));
+    } else if let Some((digits, power)) = number.split_once('e') {
+        // `1e+16`, `1e-07`
+        text.push_str(digits.strip_suffix(".0").unwrap_or(digits));
+        text.push_str(if power.starts_with('-') { "e-" } else { "e" });
+        text.push_str(power.trim_start_matches(['+', '-', '0']));
+    } else if let Some((sign, decimals)) = number.split_once("0.") {
+        // `0.000012`: written without a power of ten.
+        let digits = decimals.trim_start_matches('0');
+        let (first, others) = digits.split_at(digits.len().min(1));
+        let point = if others.is_empty() { "" } else { "." };
+        let power = decimals.len() - digits.len() + 1;
         // Writing to a string cannot fail.
-        let _ = write!(text, "{value:?}");
+        let _ = write!(text, "{sign}{first}{point}{others}e-{power}");
     } else {
-        let mut buffer = zmij::Buffer::new();
-        let number = buffer.format(value);
-        match number.split_once('e') {
-            None => text.push_str(number),
-            // `1e+16`, `1e-07`
-            Some((digits, power)) => {
-                text.push_str(digits);
-                text.push_str(if power.starts_with('-') { "e-" } else { "e" });
-                text.push_str(power.trim_start_matches(['+', '-', '0']));
-            }
-        }
-    }
-    if text.ends_with(".0") {
-        text.truncate(text.len() - 2);
+        // `NaN`, `inf`
+        text.push_str(number);
     }
 }
 
@@ -137,6 +139,8 @@ mod tests {
             1e17,
             1e-4,
             1e-5,
+            -1.25e-5,
+            3.000_000_1e-6,
             0.1,
             f64::MAX,
             f64::NAN,
