@@ -102,6 +102,7 @@ pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Da
             range: explicit.range,
             index: explicit.index,
             value: explicit.value,
+            slope: false,
             origin: origin(system, matched.equation_of[explicit.unknown]),
         });
     }

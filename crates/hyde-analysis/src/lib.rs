@@ -17,7 +17,8 @@
 //! 9. `events`: exits, `when` and `assert` become reactions;
 //! 10. `initial`: the initial system;
 //! 11. `outputs`: what is reported;
-//! 12. `partials`: derivatives of every function;
+//! 12. `partials`: derivatives of every function; through arrays that read the same scalars by arrays of derivatives
+//!     (`shapes`);
 //! 13. `hoist`: what depends on parameters alone is computed once a run.
 
 mod alias;
@@ -43,6 +44,7 @@ mod regularity;
 mod relations;
 mod segments;
 mod set_model;
+mod shapes;
 mod sliding;
 mod solve;
 mod split;

@@ -8,21 +8,21 @@
 //!     row 1: q[1] - 2*q[0];  row i: q[i] - q[i-1] for i in 2..8
 //! ```
 
+use crate::shapes::{define_slopes, is_leaf, through_shapes};
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
 use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Fills in the derivatives of the DAE's functions.
 pub(crate) fn differentiate(dae: &mut Dae) {
-    let definitions = expanded_definitions(dae);
+    let all = expanded_definitions(dae, &|_| true);
+    let slopes = define_slopes(dae, &all);
+    let definitions = expanded_definitions(dae, &|var| !slopes.contains_key(&var));
     for function in Function::ALL {
         let mut list = Vec::new();
         for (range, row, value) in expanded_rows(dae, function, &definitions) {
-            let gradient = dae.exprs.gradient(value, |expr| {
-                matches!(expr, Expr::Var(..) | Expr::Der(..) | Expr::Time)
-            });
-            for (leaf, derivative) in gradient {
-                let Some(wrt) = wrt(dae, leaf) else { continue };
+            let gradient = dae.exprs.gradient(value, is_leaf);
+            for (wrt, derivative) in through_shapes(dae, gradient, &slopes) {
                 // Nothing asks for the residual's derivative by the time.
                 if function == Function::Residual && wrt == Wrt::Time {
                     continue;
@@ -142,7 +142,8 @@ pub fn rows(dae: &Dae, function: Function) -> Vec<(Range, Index, ExprId)> {
     }
 }
 
-fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
+/// What the derivative by a leaf is by; none by what the solver does not change.
+pub(crate) fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
     if let Expr::Var(var, index) = leaf
         && let VariableKind::Delayed(delay) = dae.variables[var].kind
     {
@@ -174,10 +175,11 @@ fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
 /// begins with.
 pub(crate) type Pieces = HashMap<VarId, BTreeMap<i32, Definition>>;
 
-/// The definitions with earlier ones put in.
-pub(crate) fn expanded_definitions(dae: &mut Dae) -> Pieces {
+/// The definitions of some variables with earlier ones put in.
+pub(crate) fn expanded_definitions(dae: &mut Dae, of: &dyn Fn(VarId) -> bool) -> Pieces {
     let mut known = Pieces::new();
-    for definition in dae.definitions.clone() {
+    let definitions = dae.definitions.clone().into_iter();
+    for definition in definitions.filter(|definition| of(definition.var)) {
         for (range, value) in expand(&mut dae.exprs, definition.range, definition.value, &known) {
             let piece = Definition {
                 range,

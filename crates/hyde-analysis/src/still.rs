@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 /// Derivatives of a function by parameters and by the memory, in the order of its rows.
 pub fn still_partials(dae: &mut Dae, function: Function) -> Vec<Partial> {
-    let definitions = expanded_definitions(dae);
+    let definitions = expanded_definitions(dae, &|_| true);
     let mut list = Vec::new();
     for row in expanded_rows(dae, function, &definitions) {
         slopes(dae, row, &mut list);
@@ -120,7 +120,7 @@ pub enum TickWrt {
 /// Derivatives of what a tick writes (by position in the memory), through the assignments before it and through explicit
 /// variables. Quantisers count as the identity (S3).
 pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, ExprId)> {
-    let definitions = expanded_definitions(dae);
+    let definitions = expanded_definitions(dae, &|_| true);
     let mut assigned: HashMap<(VarId, i32), ExprId> = HashMap::new();
     let mut found = Vec::new();
     for assignment in dae.ticks[clock].assignments.clone() {

@@ -36,7 +36,7 @@ pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
             declare(text, "Real", &names.unknown(position), &parts);
         }
     }
-    for definition in &dae.definitions {
+    for definition in dae.definitions.iter().filter(|own| !own.slope) {
         let variable = &dae.variables[definition.var];
         for counter in definition.range.iter() {
             let name = names.variable(definition.var, definition.index.at(counter));
@@ -222,7 +222,7 @@ fn declared(dae: &Dae, names: &Names<'_>) -> BTreeSet<String> {
         }
     }
     found.extend((0..dae.n_unknowns).map(|position| names.unknown(position)));
-    for definition in &dae.definitions {
+    for definition in dae.definitions.iter().filter(|own| !own.slope) {
         let elements = definition.range.iter().map(|c| definition.index.at(c));
         found.extend(elements.map(|element| names.variable(definition.var, element)));
     }

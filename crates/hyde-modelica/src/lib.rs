@@ -105,7 +105,7 @@ fn class(dae: &Dae, name: &str) -> Option<Written> {
     declarations::write(&mut text, dae, &names);
     initial(&mut text, dae, &names);
     text.push_str("equation\n");
-    for definition in &dae.definitions {
+    for definition in dae.definitions.iter().filter(|own| !own.slope) {
         for counter in definition.range.iter() {
             let target = names.variable(definition.var, definition.index.at(counter));
             if names.is_input(&target) {

@@ -30,6 +30,8 @@ pub struct Definition {
     pub index: Index,
     /// Its value.
     pub value: ExprId,
+    /// Whether it is a derivative of another definition, which only derivatives read.
+    pub slope: bool,
     /// The equation it comes from.
     pub origin: Origin,
 }

@@ -11,11 +11,12 @@ use std::fmt::Write as _;
 pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
     let labels = dae::Labels::new(dae);
     let names = labels.names();
+    let definitions = || dae.definitions.iter().filter(|own| !own.slope);
     let mut out = format!(
         "structure {}\n  {} unknowns, {} explicit, {} eliminated, {} in memory\n",
         dae.name,
         dae.n_unknowns,
-        dae.definitions.iter().map(|d| d.range.len()).sum::<usize>(),
+        definitions().map(|d| d.range.len()).sum::<usize>(),
         dae.aliases.len(),
         dae.n_memory
     );
@@ -61,10 +62,10 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
         let name = dae.dependent_name(dependent);
         let _ = writeln!(out, "  {name}{}", comment(&dependent.origin, sources));
     }
-    if !dae.definitions.is_empty() {
+    if definitions().next().is_some() {
         let _ = writeln!(out, "explicit variables");
     }
-    for definition in &dae.definitions {
+    for definition in definitions() {
         let lead = super::counted(definition.range);
         let target = names.element(definition.var, definition.index);
         let _ = writeln!(
