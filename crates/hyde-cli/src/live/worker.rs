@@ -81,7 +81,7 @@ fn work(
         };
         if watched.have_changed() {
             session.reload();
-            watched = session.watched();
+            watched = session.watched().before_reading(&watched);
             updates.loaded();
         }
         let mut newest: Option<(Moved, Option<Duration>, Answer)> = None;
