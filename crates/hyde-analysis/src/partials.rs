@@ -208,7 +208,8 @@ pub(crate) fn expand(
             let Expr::Var(var, index) = expr else {
                 return None;
             };
-            let (_, definition) = piece(definitions.get(&var)?, index.at(part.first))?;
+            let pieces = definitions.get(&var)?;
+            let (_, definition) = pieces.range(..=index.at(part.first)).next_back()?;
             if definition.index.stride == 0 {
                 return Some(definition.value);
             }
@@ -237,12 +238,10 @@ fn parts(arena: &ExprArena, range: Range, root: ExprId, definitions: &Pieces) ->
         let Expr::Var(var, index) = arena[id] else {
             continue;
         };
-        let Some(pieces) = definitions.get(&var).filter(|pieces| pieces.len() > 1) else {
-            continue;
-        };
-        let begin = |counter: i32| piece(pieces, index.at(counter)).map(|(begin, _)| begin);
-        let others = range.iter().skip(1);
-        starts.extend(others.filter(|&counter| begin(counter) != begin(counter - 1)));
+        let pieces = definitions.get(&var).into_iter().flatten();
+        let begins = pieces.skip(1).map(|(&begin, _)| begin);
+        let ends = begins.filter_map(|begin| first_beyond(index, begin));
+        starts.extend(ends.filter(|&start| range.first < start && start <= range.last));
     }
     let starts: Vec<i32> = starts.into_iter().collect();
     let next = starts.iter().skip(1).map(|start| start - 1);
@@ -251,7 +250,13 @@ fn parts(arena: &ExprArena, range: Range, root: ExprId, definitions: &Pieces) ->
     parts.map(|(&first, last)| Range { first, last }).collect()
 }
 
-/// The piece that has an element, and the element it begins with.
-fn piece(pieces: &BTreeMap<i32, Definition>, element: i32) -> Option<(&i32, &Definition)> {
-    pieces.range(..=element).next_back()
+/// The first counter at which an index is on the other side of where a piece begins; none where it does not move.
+fn first_beyond(index: Index, begin: i32) -> Option<i32> {
+    let distance = match index.stride {
+        0 => return None,
+        1.. => begin - index.offset,
+        _ => index.offset - begin + 1,
+    };
+    let stride = index.stride.abs();
+    Some((distance + stride - 1).div_euclid(stride))
 }
