@@ -4,14 +4,15 @@
 //! Tarjan's algorithm; of a loop one variable after the other is torn (kept in the vector with its equation as the
 //! residual) until the rest is explicit, those with a guess first. A variable that reads much of an array (a field at a
 //! place that moves) stays in the vector: in its place every equation that reads it would depend on all of that. So does an
-//! array of which one equation reads much: the derivative of that equation would repeat the definition for every element; but
-//! not where all elements read the same scalars (the weights at such a place), for then the derivatives are arrays too. Array variables are kept or taken whole, in as many pieces as equations give them. The unknown of a `modes` block stays in
-//! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly without a division by
-//! parameters.
+//! array of which one equation reads much: the derivative of that equation would repeat the definition for every element. A
+//! [shape](crate::shapes), as the weights at such a place are, does not: its derivatives are arrays too. Array variables are
+//! kept or taken whole, in as many pieces as equations give them. The unknown of a `modes` block stays in the vector where
+//! a mode fixes a state (its row changes place then) or does not give it explicitly without a division by parameters.
 
 use crate::graph::strongly_connected_components;
 use crate::matching::{Matched, Node, sides};
 use crate::segments::Segment;
+use crate::shapes::is_shape;
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId};
@@ -54,7 +55,8 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
         explicit[number] = solve(system, matched, number, &declared);
         let of_much = much.contains(&matched.unknowns[number].var);
         in_vector[number] = explicit[number].as_ref().is_none_or(|solution| {
-            of_much && !reads_scalars(system, solution) || reads_much(system, solution)
+            let is_shape = is_shape(&system.flat.exprs, solution.range, solution.value);
+            of_much && !is_shape || reads_much(system, solution)
         });
     }
     keep_arrays_together(matched, &mut in_vector);
@@ -209,15 +211,6 @@ fn reads_much(system: &System, solution: &Explicit) -> bool {
         .into_iter()
         .filter(|&id| system.flat.exprs[id].access().is_some());
     read.count() > A_FEW
-}
-
-/// Whether all elements of an array read the same values: see [`crate::shapes`].
-fn reads_scalars(system: &System, solution: &Explicit) -> bool {
-    let leaves = system.flat.exprs.below(&[solution.value]);
-    let mut read = leaves
-        .into_iter()
-        .filter_map(|id| system.flat.exprs[id].access());
-    solution.range.len() > A_FEW && read.all(|(_, index, _)| index.stride == 0)
 }
 
 /// The arrays of which one equation reads more than a few elements.

@@ -17,7 +17,10 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 pub(crate) fn differentiate(dae: &mut Dae) {
     let all = expanded_definitions(dae, &|_| true);
     let slopes = define_slopes(dae, &all);
-    let definitions = expanded_definitions(dae, &|var| !slopes.contains_key(&var));
+    let definitions = match slopes.is_empty() {
+        true => all,
+        false => expanded_definitions(dae, &|var| !slopes.contains_key(&var)),
+    };
     for function in Function::ALL {
         let mut list = Vec::new();
         for (range, row, value) in expanded_rows(dae, function, &definitions) {
@@ -175,11 +178,11 @@ pub(crate) fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
 /// begins with.
 pub(crate) type Pieces = HashMap<VarId, BTreeMap<i32, Definition>>;
 
-/// The definitions of some variables with earlier ones put in.
+/// The definitions of some variables of the model with earlier ones put in.
 pub(crate) fn expanded_definitions(dae: &mut Dae, of: &dyn Fn(VarId) -> bool) -> Pieces {
     let mut known = Pieces::new();
     let definitions = dae.definitions.clone().into_iter();
-    for definition in definitions.filter(|definition| of(definition.var)) {
+    for definition in definitions.filter(|own| !own.slope && of(own.var)) {
         for (range, value) in expand(&mut dae.exprs, definition.range, definition.value, &known) {
             let piece = Definition {
                 range,

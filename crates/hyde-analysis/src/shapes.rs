@@ -11,7 +11,7 @@
 use crate::explicit::A_FEW;
 use crate::partials::{Pieces, wrt};
 use hyde_ir::dae::{Dae, Definition, Place, Space, Wrt};
-use hyde_ir::{Expr, ExprId, VarId};
+use hyde_ir::{Expr, ExprArena, ExprId, Range, VarId};
 use std::collections::BTreeMap;
 
 /// The derivatives of each shape: by what, and the array that has them.
@@ -23,7 +23,9 @@ pub(crate) fn define_slopes(dae: &mut Dae, definitions: &Pieces) -> Slopes {
     shapes.sort_unstable();
     shapes.retain(|&var| {
         dae.variables[var].len.is_some()
-            && definitions[&var].values().all(|piece| is_shape(dae, piece))
+            && definitions[&var]
+                .values()
+                .all(|piece| is_shape(&dae.exprs, piece.range, piece.value))
     });
     let mut slopes = Slopes::new();
     for shape in shapes {
@@ -62,11 +64,11 @@ pub(crate) fn define_slopes(dae: &mut Dae, definitions: &Pieces) -> Slopes {
     slopes
 }
 
-/// Whether a definition is that of more than a few elements, all of which read the same values.
-fn is_shape(dae: &Dae, definition: &Definition) -> bool {
-    let all = dae.exprs.below(&[definition.value]);
-    let mut read = all.into_iter().filter_map(|id| dae.exprs[id].access());
-    definition.range.len() > A_FEW && read.all(|(_, index, _)| index.stride == 0)
+/// Whether a value is that of more than a few elements, all of which read the same variables.
+pub(crate) fn is_shape(exprs: &ExprArena, range: Range, value: ExprId) -> bool {
+    let all = exprs.below(&[value]);
+    let mut read = all.into_iter().filter_map(|id| exprs[id].access());
+    range.len() > A_FEW && read.all(|(_, index, _)| index.stride == 0)
 }
 
 /// What derivatives are by.

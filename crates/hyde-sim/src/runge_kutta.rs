@@ -156,8 +156,8 @@ impl<S: System> RungeKutta<S> {
         self.atol.copy_from_slice(atol);
     }
 
-    /// Goes on from other values, or with other equations, with the step it had or a shorter one, as the curvature asks that
-    /// allows a method of order 1 this step (in s), and no longer one than so.
+    /// Goes on from other values, or with other equations. The next step is the one it had, unless one of two others is
+    /// shorter: the first step that goes with a step of order 1 of `by_curvature_s`, and `longest_s`.
     pub(crate) fn restart(&mut self, At { t, y, yp }: At<'_>, by_curvature_s: f64, longest_s: f64) {
         self.t = t;
         self.y.copy_from_slice(y);
