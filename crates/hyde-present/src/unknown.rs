@@ -16,8 +16,9 @@ pub fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             let _ = writeln!(out, "\n{}", own.written.text.trim_end());
             let seen = &own.law.seen;
             out.push('\n');
+            let [place, speed] = own.law.site.kind.variables();
             let range = format!(
-                "{}: speed to {}, position {} to {}, time {} to {} (SI)",
+                "{}: {speed} to {}, {place} {} to {}, time {} to {} (SI)",
                 own.law.site.path,
                 significant(seen.speed, 3),
                 significant(seen.place.0, 3),

@@ -161,6 +161,9 @@ const FORMS: [(&str, &str, Form); 28] = [
     ("order", "cos(N*x)", |_, x, _, a, _| (a * x).cos()),
     ("elapsed", "t/t1", |_, _, t, _, _| t / 2.0),
     ("fading", "exp(-t/tau)", |_, _, t, a, _| (-t / a).exp()),
+    ("coming", "1 - exp(-t/tau)", |_, _, t, a, _| {
+        1.0 - (-t / a).exp()
+    }),
 ];
 
 #[test]

@@ -106,7 +106,7 @@ impl Diagnosis {
                 inquiry.thresholds,
             ),
         };
-        Ok(())
+        self.spread(inquiry)
     }
 
     /// Whether what the model has beside one with fewer findings explains a part of what is missing that is worth a word.

@@ -19,6 +19,7 @@ use super::scan::Score;
 use super::stage::{Ground, Stage};
 use super::thresholds::Thresholds;
 use super::trial::Trial;
+use super::undetermined::with_undetermined;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
 use crate::fit::{Solution, Varied, inflation};
@@ -138,6 +139,19 @@ impl Diagnosis {
     #[must_use]
     pub fn law(&self) -> Option<&super::FoundLaw> {
         self.unknown.as_ref()?.found.as_ref()
+    }
+
+    /// Widens the intervals by what shapes that the records do not determine might be.
+    pub(super) fn spread(&mut self, inquiry: &Inquiry<'_>) -> Result<(), Unsupported> {
+        let ground = Ground {
+            observer: self.observer.as_ref().unwrap_or(inquiry.observer),
+            ..inquiry.ground()
+        };
+        let mut hypotheses = inquiry.hypotheses.to_vec();
+        hypotheses.extend(self.law().map(|law| law.hypothesis.clone()));
+        let found = std::mem::take(&mut self.findings);
+        self.findings = with_undetermined(&ground, &hypotheses, &self.stage(), found)?;
+        Ok(())
     }
 
     /// Makes a stage the answer. What is known of effects that were found before stays.
@@ -275,6 +289,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     }
     calibrate_found(inquiry, &mut diagnosis)?;
     let dropped = only_told(inquiry, &mut diagnosis)?;
+    diagnosis.spread(inquiry)?;
     let nothing = diagnosis.findings.is_empty() && diagnosis.unexplained && !dropped.is_empty();
     if nothing && inquiry.barred.len() < thresholds.retries {
         // What stood in for another effect, better than this where both were begun, is out of its way.

@@ -294,13 +294,19 @@ pub(crate) fn finish(
         solution = fit(&solution.values, &varied, &kept, Slopes::Tangents)?;
     }
     if worth {
-        let mut values = solution.values.clone();
+        let (mut fewer, mut values) = (varied.clone(), solution.values.clone());
         let (shapes, all) = (&hypothesis.shapes, own.clone());
-        let undetermined = undetermined::held(&solution, &mut varied, &mut values, shapes, all);
+        let essential = sizes.start..sizes.end.min(sizes.start + hypothesis.essential());
+        let undetermined =
+            undetermined::held(&solution, &mut fewer, &mut values, shapes, all, essential);
         if !undetermined.is_empty() {
-            kept.extend(undetermined);
-            own.end = varied.len();
-            solution = fit(&values, &varied, &kept, Slopes::Tangents)?;
+            let count = undetermined.len();
+            let more = [kept.as_slice(), &undetermined].concat();
+            let fitted = fit(&values, &fewer, &more, Slopes::Tangents)?;
+            if fitted.cost() - solution.cost() <= undetermined::given_up(&solution, count) {
+                (solution, varied, kept) = (fitted, fewer, more);
+                own.end = varied.len();
+            }
         }
     }
     let at_bound = sizes

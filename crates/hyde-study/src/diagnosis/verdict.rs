@@ -96,14 +96,23 @@ pub fn repeated(told: &Diagnosed<'_>, finding: &Finding) -> Vec<String> {
     found
 }
 
-/// `dF = 12.1 ± 0.3 N`
+/// The part of its width by which an interval may lie off the value and is still told as `±`.
+const OFF: f64 = 0.02;
+
+/// `dF = 12.1 ± 0.3 N`, or `drift = 2.1 um, 0.34 um to 47 um`
 pub fn quantity(quantity: &Quantity) -> String {
-    let half = (quantity.interval.1 - quantity.interval.0) / 2.0;
+    let (low, high) = quantity.interval;
+    let half = (high - low) / 2.0;
     let (_, of) = drawn_in(&quantity.unit);
     if half == 0.0 {
         // A count that was tried: 12 periods.
         let value = number(quantity.value, 4, &quantity.unit);
         return format!("{} = {value}", quantity.name);
+    }
+    if ((low + high) / 2.0 - quantity.value).abs() > OFF * half {
+        let [value, low, high] = [(quantity.value, 4), (low, 2), (high, 2)]
+            .map(|(si, digits)| number(si, digits, &quantity.unit));
+        return format!("{} = {value}, {low} to {high}", quantity.name);
     }
     format!(
         "{} = {} ± {}",

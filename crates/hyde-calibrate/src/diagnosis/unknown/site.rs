@@ -138,8 +138,14 @@ impl Kind {
         let [place, speed] = match self.form {
             LawForm::Motion | LawForm::Friction => ["place", "speed"],
             LawForm::Elastic => ["stretch", "rate of stretch"],
-            LawForm::Demand => match self.noun() {
-                Some(noun) => return ["demand".to_owned(), format!("rate of {noun}")],
+            LawForm::Demand => match noun_of(self.place.unit.si().text()) {
+                Some(noun) => {
+                    let place = match self.noun() == Some(noun) {
+                        true => "demand",
+                        false => noun,
+                    };
+                    return [place.to_owned(), format!("rate of {noun}")];
+                }
                 None => ["demand", "rate"],
             },
         };
@@ -180,13 +186,7 @@ impl Kind {
     }
 
     fn noun(&self) -> Option<&'static str> {
-        match self.value.text() {
-            "N" => Some("force"),
-            "N.m" => Some("torque"),
-            "V" => Some("voltage"),
-            "A" => Some("current"),
-            _ => None,
-        }
+        noun_of(self.value.text())
     }
 
     /// Whether it is what a sensor tells.
@@ -245,6 +245,17 @@ impl Kind {
             }
         }
         text
+    }
+}
+
+/// What a quantity with an SI unit is called.
+fn noun_of(unit: &str) -> Option<&'static str> {
+    match unit {
+        "N" => Some("force"),
+        "N.m" => Some("torque"),
+        "V" => Some("voltage"),
+        "A" => Some("current"),
+        _ => None,
     }
 }
 
