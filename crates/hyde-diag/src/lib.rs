@@ -2,9 +2,11 @@
 //!
 //! A [`Span`] points into one of the [`Sources`]; an [`Origin`] adds the instance path and who made the thing, and is
 //! carried by every equation, relation and variable to run time. What is wrong with a model is a [`Diagnostic`] with
-//! a [`Code`], collected in [`Diagnostics`]; rendering it is the business of the command line.
+//! a [`Code`], declared with [`diagnostics!`] and collected in [`Diagnostics`]; rendering it is the business of the command
+//! line.
 
 mod code;
+mod declared;
 mod diagnostic;
 mod origin;
 mod sink;

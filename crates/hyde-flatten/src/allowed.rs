@@ -5,7 +5,7 @@
 use crate::instance::{Binding, Setting, Typed};
 use crate::model::Model;
 use crate::model::bind::short;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::allowed as refused;
 use hyde_ir::flat::Assert;
 use hyde_ir::{
     BinaryOp, Expr as Ir, ExprId, Id as _, Index, ParamId, UnaryOp, VarId, VariableKind,
@@ -47,11 +47,7 @@ fn value_of_bound<'a>(
     );
     let number = model.flat.exprs.evaluate(value.id, |_| Err(())).ok();
     if number.is_none() {
-        model.report(
-            Diagnostic::error(Code::NotConstant, "a bound is not a number")
-                .label(bound.span, "depends on a parameter")
-                .help("write a number, or state the condition: `assert(k < k_max, \"…\");`"),
-        );
+        model.report(refused::bound_not_a_number(bound.span));
     }
     number
 }
@@ -70,16 +66,14 @@ fn check_value(model: &mut Model<'_, '_>, param: ParamId) {
             continue;
         };
         if let Some(refusal) = allowed.refusal(value, &unit) {
-            let message = format!(
-                "`{name}` cannot be {}: {refusal}",
-                format_value(value, &unit)
-            );
-            let diagnostic = Diagnostic::error(Code::NotAllowed, message)
-                .label(origin.span, "its value is given here");
-            model.report(match allowed.kind {
-                Kind::Integer => diagnostic.help("round it, `integer(x)`, or declare it `Real`"),
-                Kind::Real | Kind::Boolean => diagnostic,
-            });
+            let value = format_value(value, &unit);
+            model.report(refused::value_not_allowed(
+                &name,
+                &value,
+                &refusal,
+                allowed.kind,
+                origin.span,
+            ));
             return;
         }
     }
@@ -113,11 +107,7 @@ pub(crate) fn check_asserts(model: &mut Model<'_, '_>) {
         }
         let assert = &model.flat.asserts[number];
         let (message, origin) = (assert.message.clone(), assert.origin.span);
-        model.report(
-            Diagnostic::error(Code::AssertFailed, message)
-                .label(origin, "false for the values that its parameters have")
-                .help("give them other values: `hyde params FILE` lists them, with where each comes from"),
-        );
+        model.report(refused::assert_false(&message, origin));
     }
 }
 
@@ -191,16 +181,7 @@ pub(crate) fn check_whole(model: &mut Model<'_, '_>, target: &Typed, value: &Typ
         return;
     }
     let name = short(&model.flat.variables[var].name).to_owned();
-    model.report(
-        Diagnostic::error(
-            Code::NotAllowed,
-            format!("`{name}` is an Integer, and its value may not be an integer"),
-        )
-        .label(value.span, "may have a fraction")
-        .help(format!(
-            "round it where values are sampled or set, `integer(…)`, or declare `{name}` as `Real`"
-        )),
-    );
+    model.report(refused::maybe_no_integer(&name, value.span));
 }
 
 /// Whether an expression has whole values alone.

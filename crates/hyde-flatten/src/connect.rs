@@ -9,7 +9,8 @@ use crate::instance::{Elementwise, InstanceId, Member, Position, Scope, Setting,
 use crate::instantiate::InstanceTree;
 use crate::model::Model;
 use crate::model::lower::Resolved;
-use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
+use crate::refusals::connect as refused;
+use hyde_diag::{MadeBy, Origin, Span};
 use hyde_ir::flat::{Equation, Flow};
 use hyde_ir::{Expr as Ir, FlatModel, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
@@ -53,24 +54,11 @@ pub(crate) fn connection<'a>(
         return;
     };
     if let Some((side, other)) = lengths.iter().find(|(_, other)| *other != Some(len)) {
-        let (what, label, help) = match other {
-            Some(other) => (
-                "arrays of different lengths are connected".to_owned(),
-                format!("has {other} elements"),
-                "connect as many: `a[1:3]` means three elements of `a`",
-            ),
-            None => (
-                "an array and a single one are connected".to_owned(),
-                "one".to_owned(),
-                "name an element, `a[1]`, or join each with it: `for i in 1:n loop connect(a[i], b); end for;`",
-            ),
-        };
-        model.report(
-            Diagnostic::error(Code::BadConnection, what)
-                .label(side.span, label)
-                .label(array.span, format!("has {len} elements"))
-                .help(help),
-        );
+        let array = (array.span, len);
+        model.report(match *other {
+            Some(other) => refused::lengths_differ((side, other), array),
+            None => refused::array_with_one(side, array),
+        });
         return;
     }
     if can_unroll(model.diagnostics, len, span) {
@@ -103,14 +91,7 @@ fn connect_one<'a>(
                     && inside_part != Some(scope.instance)
                     && model.tree[scope.instance].outer.is_none()
                 {
-                    model.report(
-                        Diagnostic::error(
-                            Code::BadConnection,
-                            format!("`{}` is too deep to connect", side.dotted()),
-                        )
-                        .label(side.span, "a connector of a part of a part")
-                        .help("connect it inside the part, or give the part a connector"),
-                    );
+                    model.report(refused::too_deep(side));
                     return;
                 }
                 connectors.push((instance, !outside, side));
@@ -130,45 +111,20 @@ fn connect_one<'a>(
                     .filter(|(_, member)| is_connector(&model.tree, member))
                     .map(|(name, _)| *name)
                     .collect();
-                let diagnostic = Diagnostic::error(
-                    Code::BadConnection,
-                    format!(
-                        "`{}` is a component ({class}), not a connector",
-                        side.dotted()
-                    ),
-                )
-                .label(side.span, "a component");
-                let help = crate::model::listed(&known);
-                model.report(if known.is_empty() {
-                    diagnostic
-                } else {
-                    diagnostic.help(format!("connect one of its connectors: {help}"))
-                });
+                model.report(refused::component(side, &class, &known));
                 return;
             }
             Some(_) => {
-                model.report(
-                    Diagnostic::error(
-                        Code::BadConnection,
-                        format!("`{}` is not a connector", side.dotted()),
-                    )
-                    .label(side.span, "cannot be connected"),
-                );
+                model.report(refused::not_a_connector(side));
                 return;
             }
             None => return,
         }
     }
     match (connectors.first().copied(), signals.first().copied()) {
-        (Some((_, _, connector)), Some((_, _, signal))) => model.report(
-            Diagnostic::error(
-                Code::BadConnection,
-                "a connector and a signal are connected",
-            )
-            .label(connector.span, "a connector")
-            .label(signal.span, "a signal")
-            .help("connect connectors with each other; a signal is the value of an input, `Part part(u = x);`, or stands in an equation"),
-        ),
+        (Some((_, _, connector)), Some((_, _, signal))) => {
+            model.report(refused::connector_and_signal(connector.span, signal.span))
+        }
         (Some((first, ..)), None) => {
             let same = |instance: InstanceId| {
                 std::ptr::eq(model.tree[instance].class, model.tree[first].class)
@@ -182,28 +138,17 @@ fn connect_one<'a>(
                     &model.tree[first].class.name.text,
                     &model.tree[other].class.name.text,
                 );
-                let message =
-                    format!("connectors of different types are connected: `{a}` and `{b}`");
-                let diagnostic = Diagnostic::error(Code::BadConnection, message)
-                    .label(side.span, format!("a `{b}`"))
-                    .label(connectors[0].2.span, format!("a `{a}`"))
-                    .help(format!(
-                        "connect connectors of the same type; between `{a}` and `{b}` use a component that has both"
-                    ));
-                model.report(diagnostic);
+                let first = (connectors[0].2.span, a.as_str());
+                model.report(refused::types_differ(first, (side.span, b)));
                 return;
             }
             let twice = connectors.iter().enumerate().find(|(at, (instance, ..))| {
-                connectors[..*at].iter().any(|(before, ..)| before == instance)
+                connectors[..*at]
+                    .iter()
+                    .any(|(before, ..)| before == instance)
             });
             if let Some((_, (.., side))) = twice {
-                let diagnostic = Diagnostic::error(
-                    Code::BadConnection,
-                    format!("`{}` is connected to itself", side.dotted()),
-                )
-                .label(side.span, "the same connector again")
-                .help("name the connector of another component");
-                model.report(diagnostic);
+                model.report(refused::connected_to_itself(side));
                 return;
             }
             let sides = connectors
@@ -211,7 +156,8 @@ fn connect_one<'a>(
                 .map(|(instance, inside, _)| (*instance, *inside))
                 .collect();
             let origin = model
-                .tree.origin(scope.instance, span)
+                .tree
+                .origin(scope.instance, span)
                 .made_by(MadeBy::Connection);
             model.connections.push(Connection { sides, origin });
         }
@@ -231,7 +177,8 @@ fn connect_one<'a>(
                 model.same_kind(&left, &right);
                 model.agree(&left, &right, "`connect` joins", scope.instance);
                 let origin = model
-                    .tree.origin(scope.instance, span)
+                    .tree
+                    .origin(scope.instance, span)
                     .made_by(MadeBy::Connection);
                 equations.push(Equation {
                     range: Range::SCALAR,

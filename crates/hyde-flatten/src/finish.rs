@@ -2,7 +2,8 @@
 
 use crate::dimension::{Dim, Dimensions};
 use crate::instance::{Lowering, ParameterNotes, VariableNotes};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use crate::refusals::allowed as refused;
+use hyde_diag::{Diagnostic, Diagnostics, Span};
 use hyde_ir::{
     Expr as Ir, FlatModel, Id as _, IdVec, ParamId, Parameter, Quantity, VarId, Variable,
 };
@@ -57,17 +58,9 @@ fn refuse_circle(flat: &FlatModel, circle: &[ParamId]) -> Diagnostic {
         .iter()
         .map(|&id| format!("`{}`", flat.parameters[id].name))
         .collect();
-    let message = match names.as_slice() {
-        [only] => format!("the value of {only} uses itself"),
-        several => format!("the values of {} use each other", several.join(", ")),
-    };
-    let mut diagnostic = Diagnostic::error(Code::Cycle, message);
-    for (number, &id) in circle.iter().enumerate() {
-        let next = &names[(number + 1) % names.len()];
-        let span = flat.parameters[id].origin.span;
-        diagnostic = diagnostic.label(span, format!("uses {next}"));
-    }
-    diagnostic.help("give one of them a number")
+    let place = |&id: &ParamId| flat.parameters[id].origin.span;
+    let places: Vec<Span> = circle.iter().map(place).collect();
+    refused::circle_of_parameters(&names, &places)
 }
 
 fn visit(

@@ -33,6 +33,7 @@ mod meaning;
 mod model;
 mod modes;
 mod names;
+mod refusals;
 mod site;
 mod turns;
 mod wrap;
