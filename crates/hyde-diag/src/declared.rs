@@ -30,6 +30,7 @@
 /// | `note TEXT;` | a fact |
 /// | `help TEXT;` | what to write instead |
 /// | `match VALUE { PATTERN => { PARTS } … }` | the parts of one arm; `VALUE` is a name, or stands in parentheses |
+/// | `if let PATTERN = NAME { PARTS }` | the parts if the pattern fits |
 /// | `for PATTERN in VALUE { PARTS }` | the parts for each item |
 #[macro_export]
 macro_rules! diagnostics {
@@ -49,9 +50,15 @@ macro_rules! diagnostics {
     (@parts $made:ident; match $value:ident $($rest:tt)*) => {
         $crate::diagnostics!(@parts $made; match ($value) $($rest)*);
     };
-    (@parts $made:ident; match ($value:expr) { $($pattern:pat => { $($part:tt)* })+ } $($rest:tt)*) => {
+    (@parts $made:ident; match ($value:expr) { $($pattern:pat $(if $guard:expr)? => { $($part:tt)* })+ } $($rest:tt)*) => {
         match $value {
-            $($pattern => { $crate::diagnostics!(@parts $made; $($part)*); })+
+            $($pattern $(if $guard)? => { $crate::diagnostics!(@parts $made; $($part)*); })+
+        }
+        $crate::diagnostics!(@parts $made; $($rest)*);
+    };
+    (@parts $made:ident; if let $pattern:pat = $value:ident { $($part:tt)* } $($rest:tt)*) => {
+        if let $pattern = $value {
+            $crate::diagnostics!(@parts $made; $($part)*);
         }
         $crate::diagnostics!(@parts $made; $($rest)*);
     };

@@ -6,8 +6,9 @@
 //! What nothing determines is a pure number (U2).
 
 use crate::instance::InstanceId;
+use crate::refusals::dimensions as refused;
 use crate::turns::{self, Said};
-use hyde_diag::{Code, Diagnostic, InstancePath, Span};
+use hyde_diag::{Diagnostic, InstancePath, Span};
 use hyde_ir::ExprId;
 use hyde_units::{Agreement, Dimension, Exponent};
 
@@ -212,7 +213,8 @@ impl Dimensions {
                         self.solved[*unknown] = Some(root.unwrap_or(Dimension::DIMENSIONLESS));
                         match root {
                             Some(_) => self.waiting.push((a, b, demand)),
-                            None => found.push((no_root(*exponent, &demand), demand.sides)),
+                            None => found
+                                .push((refused::no_root(*exponent, demand.spans), demand.sides)),
                         }
                     }
                     _ => self.waiting.push((a, b, demand)),
@@ -242,43 +244,24 @@ impl Dimensions {
         let (left, right) = demand.spans;
         match a.agreement(b) {
             Agreement::Same => None,
-            Agreement::AngleDiffers => Some(
-                Diagnostic::warning(
-                    Code::AngleMismatch,
-                    disagreement(demand.what, a, b),
-                )
-                .label(left, format!("this is {}", short(a)))
-                .label(right, format!("this is {}", short(b)))
-                .note(
-                    "the two differ only in the power of the angle: Hz counts turns, rad/s radians",
-                )
-                .help(turns::repair(demand.what, a, b, &demand.said)),
-            ),
+            Agreement::AngleDiffers => Some(refused::angle_differs(
+                &disagreement(demand.what, a, b),
+                (left, a),
+                (right, b),
+                &turns::repair(demand.what, a, b, &demand.said),
+            )),
             Agreement::Different => {
-                let diagnostic = Diagnostic::error(
-                    Code::UnitMismatch,
-                    disagreement(demand.what, a, b),
-                );
-                let diagnostic = if left == right {
-                    diagnostic.label(right, format!("this is {}, not {}", named(b), named(a)))
-                } else {
-                    diagnostic
-                        .label(left, format!("this is {}", named(a)))
-                        .label(right, format!("this is {}", named(b)))
-                };
                 let (instance, names) = in_scope(demand.instance);
                 let known =
                     |(name, dim): (String, Dim)| Some((name, self.resolve(&dim).as_known()?));
                 let names: Vec<(String, Dimension)> = names.into_iter().filter_map(known).collect();
-                let diagnostic = if instance.as_str().is_empty() {
-                    diagnostic
-                } else {
-                    diagnostic.note(format!("in instance `{instance}`"))
-                };
-                Some(match repair(a, b, demand, &names) {
-                    Some(help) => diagnostic.help(help),
-                    None => diagnostic,
-                })
+                Some(refused::dimensions_differ(
+                    &disagreement(demand.what, a, b),
+                    (left, a),
+                    (right, b),
+                    &instance,
+                    repair(a, b, demand, &names),
+                ))
             }
         }
     }
@@ -293,22 +276,8 @@ impl Dimensions {
     }
 }
 
-/// An unknown dimension to a power that no exact dimension has.
-fn no_root(exponent: Exponent, demand: &Demand) -> Diagnostic {
-    let (left, right) = demand.spans;
-    let message = format!("no dimension to the power {exponent} makes the two sides equal");
-    let diagnostic = Diagnostic::error(Code::UnitMismatch, message);
-    let diagnostic = match left == right {
-        true => diagnostic,
-        false => diagnostic.label(left, "this side"),
-    };
-    diagnostic
-        .label(right, "has a variable without a unit, to this power")
-        .help("declare the variable with a type or a unit, and divide it by a reference value of that unit before it is raised: `(x/(1 [m]))^1.3`")
-}
-
 /// A dimension as said of a place.
-fn named(dimension: Dimension) -> String {
+pub(crate) fn named(dimension: Dimension) -> String {
     if dimension.is_dimensionless() {
         short(dimension)
     } else {

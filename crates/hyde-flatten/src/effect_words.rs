@@ -1,8 +1,9 @@
 //! What the user's effects say of themselves beside equations: the marks they leave, and what they are taken for.
 
-use crate::model::{Model, listed};
-use crate::names::{FileIndex, Names, nearest};
-use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use crate::model::Model;
+use crate::names::{FileIndex, Names};
+use crate::refusals::effects as refused;
+use hyde_diag::Diagnostics;
 use hyde_syntax::ast::{
     Argument, Class, ClassBody, ClassKind, Element, ExprKind, Name, Prefix, Reference,
 };
@@ -72,42 +73,18 @@ fn check_mark<'a>(
 ) {
     let all: Vec<&str> = MARKS.iter().map(|(name, _)| *name).collect();
     let Some((_, of)) = MARKS.iter().find(|(name, _)| *name == mark.text) else {
-        let diagnostic = Diagnostic::error(
-            Code::UnknownName,
-            format!("`{}` is not a signature of an effect", mark.text),
-        )
-        .label(mark.span, "not known");
-        let known = format!("the signatures are `{}`", all.join("`, `"));
-        model.report(match nearest(&mark.text, all.iter().copied()) {
-            Some(near) => diagnostic
-                .help(format!("did you mean `{near}`?"))
-                .note(known),
-            None => diagnostic.help(known),
-        });
+        model.report(refused::no_signature(mark, &all));
         return;
-    };
-    let wrong = |span: Span, message: String, help: String| {
-        Diagnostic::error(Code::BadArguments, message)
-            .label(span, "the shape that defines this signature")
-            .help(help)
     };
     let found = match arguments {
         [] => return,
         [only] if !of.is_empty() => only,
         _ if of.is_empty() => {
-            model.report(wrong(
-                mark.span,
-                format!("`{}` takes no shape", mark.text),
-                format!("write `{}` alone", mark.text),
-            ));
+            model.report(refused::signature_takes_no_shape(mark));
             return;
         }
         _ => {
-            model.report(wrong(
-                mark.span,
-                format!("`{}` takes one shape", mark.text),
-                format!("write {of}: `{}(…)`", mark.text),
-            ));
+            model.report(refused::signature_takes_one_shape(mark, of));
             return;
         }
     };
@@ -117,15 +94,8 @@ fn check_mark<'a>(
     {
         return;
     }
-    let help = match shapes.as_slice() {
-        [] => format!("declare {of} as a `shape`"),
-        shapes => format!("its shapes are {}", listed(shapes)),
-    };
-    let message = format!(
-        "`{}` has no such shape for its signature `{}`",
-        class.name.text, mark.text
-    );
-    model.report(wrong(found.value.span, message, help));
+    let names = (class.name.text.as_str(), mark.text.as_str());
+    model.report(refused::no_such_shape(names, found.value.span, of, &shapes));
 }
 
 /// The names of the shapes of an effect and of what it extends.
@@ -165,17 +135,9 @@ fn check_confounded(
 ) {
     let found = names.class(file, name);
     let diagnostic = match found {
-        Some((_, other)) if std::ptr::eq(other, class) => {
-            Diagnostic::error(Code::WrongType, "an effect cannot be confused with itself")
-                .label(name.span, "this is the effect itself")
-                .help("name other effects with the same signature, or remove the line")
-        }
+        Some((_, other)) if std::ptr::eq(other, class) => refused::confused_with_itself(name.span),
         Some((_, other)) if other.kind == ClassKind::Effect => return,
-        Some((_, other)) => Diagnostic::error(
-            Code::WrongType,
-            format!("`{}` is not an effect", other.name.text),
-        )
-        .label(name.span, "only effects can be confused with each other"),
+        Some((_, other)) => refused::confused_with_no_effect(&other.name.text, name.span),
         None => names.unknown(file, name),
     };
     diagnostics.push(diagnostic);

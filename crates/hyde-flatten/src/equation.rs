@@ -18,10 +18,11 @@ use crate::experiment::add_measure;
 use crate::instance::{Counter, Elementwise, InstanceId, Position, Scope, Setting};
 use crate::model::Model;
 use crate::modes::lower_modes;
+use crate::refusals::equations as refused;
 use crate::zero;
 use branch::if_equation;
 use event::when;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::Range;
 use hyde_ir::flat::{Assert, ClockedEquation, Equation};
 use hyde_syntax::ast::{self, Element, EquationKind, Expr, ExprKind};
@@ -146,11 +147,7 @@ pub(crate) fn lower_equation<'a>(
             Vec::new()
         }
         EquationKind::Reinit(state, _) => {
-            model.report(
-                Diagnostic::error(Code::Misplaced, "`reinit` outside an event")
-                    .label(state.span, "when?")
-                    .help("write it in `when … then`, or after an exit of a mode"),
-            );
+            model.report(refused::reinit_outside_event(state.span));
             Vec::new()
         }
     }

@@ -10,7 +10,8 @@
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use crate::refusals::equations as refused;
+use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
 use hyde_ir::flat::{Action, ClockedEquation, Equation, When};
 use hyde_ir::{
     ClockId, Expr as Ir, ExprId, FlatModel, Id as _, Index, Memo, Range, VarId, VariableKind,
@@ -41,18 +42,7 @@ pub(crate) fn event_clock<'a>(
     outer: InstanceId,
 ) {
     let [argument] = clocked.arguments.as_slice() else {
-        let diagnostic = Diagnostic::error(
-            Code::BadArguments,
-            format!(
-                "`{}` ticks at an event, and at nothing else",
-                clocked.name.text
-            ),
-        );
-        let diagnostic = diagnostic.label(
-            clocked.name.span,
-            "its other arguments are of a clock in time",
-        );
-        model.report(diagnostic.help("write `clocked name(event = angle > next)`"));
+        model.report(refused::event_clock_with_more(&clocked.name));
         return;
     };
     let scope = Scope::new(outer, Setting::Condition);
@@ -141,12 +131,8 @@ fn assignment(
         .map(|target| (target, rhs))
         .or_else(|| Some((own(rhs)?, lhs)));
     let Some(((var, index), value)) = found else {
-        let message = "an equation of a clocked part that ticks at an event is not `x = …`";
-        let diagnostic = Diagnostic::error(Code::ClockedEquation, message);
-        let diagnostic = diagnostic.label(equation.origin.span, "sets no variable");
-        return Err(Box::new(
-            diagnostic.help("write `x = …` with the old values as `pre(x)`"),
-        ));
+        let refusal = refused::sets_nothing_at_event(equation.origin.span);
+        return Err(Box::new(refusal));
     };
     let held: HashMap<VarId, VarId> = model.column_variables.values().copied().collect();
     let value = model
@@ -179,20 +165,12 @@ fn report_unset(
         if !own || set.iter().any(|assignment| assignment.var == var) {
             continue;
         }
-        let (code, name) = match variable.input {
-            true => (Code::UnboundInput, variable.name.clone()),
-            false => (Code::TooFewEquations, variable.name.clone()),
+        let unset = match variable.input {
+            true => refused::input_unset_at_ticks,
+            false => refused::unset_at_ticks,
         };
         let tick = &flat.clocks[clock].name;
-        let diagnostic = Diagnostic::error(
-            code,
-            format!("no equation determines `{name}` at the ticks of `{tick}`"),
-        )
-        .label(variable.origin.span, "declared here")
-        .help(format!(
-            "give it an equation in the clocked part: `{name} = …;`"
-        ));
-        diagnostics.push(diagnostic);
+        diagnostics.push(unset(&variable.name, tick, variable.origin.span));
     }
 }
 
@@ -201,15 +179,8 @@ fn report_circle(flat: &FlatModel, diagnostics: &mut Diagnostics, waiting: &[Ass
         .iter()
         .map(|own| format!("`{}`", flat.variables[own.var].name))
         .collect();
-    let message = format!(
-        "{} depend on each other in a loop at one tick",
-        names.join(", ")
-    );
-    let mut diagnostic = Diagnostic::error(Code::ClockedLoop, message);
-    for own in waiting {
-        diagnostic = diagnostic.label(own.origin.span, "in the circle");
-    }
-    diagnostics.push(diagnostic.help("read one of them from the tick before: `pre(x)`"));
+    let places: Vec<Span> = waiting.iter().map(|own| own.origin.span).collect();
+    diagnostics.push(refused::circle_at_tick(&names, &places));
 }
 
 /// `hold(x)` of them is x, which is discrete.

@@ -23,10 +23,11 @@ use crate::Form;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::refusals::experiment as refused;
 use bode::lower_bode;
 use cut::lower_margins;
 use figure::lower_figure;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use hyde_diag::{Diagnostics, Span};
 use hyde_ir::FlatModel;
 use hyde_ir::flat::Method;
 use hyde_syntax::ast::{self, ExperimentItem};
@@ -45,13 +46,7 @@ pub(crate) fn experiment(model: &mut Model<'_, '_>, root: InstanceId) {
     let Some(experiment) = model.names.own_experiment(name) else {
         if let Some((file, _)) = model.input.files.first() {
             let file = *file;
-            model.report(
-                Diagnostic::error(
-                    Code::NoExperiment,
-                    format!("the file has no experiment `{name}`"),
-                )
-                .label(Span::new(file, 0, 0), "searched in this file"),
-            );
+            model.report(refused::no_experiment(name, Span::new(file, 0, 0)));
         }
         return;
     };
@@ -79,11 +74,7 @@ pub(crate) fn experiment(model: &mut Model<'_, '_>, root: InstanceId) {
                 let scope = at(Setting::Measure);
                 let typed = model.lower(condition, &scope);
                 if !typed.truth {
-                    model.report(
-                        Diagnostic::error(Code::WrongType, "an expectation is a condition")
-                            .label(condition.span, "a number")
-                            .help("compare it: `expect max(abs(e)) < 10 [um]`"),
-                    );
+                    model.report(refused::expects_number(condition.span));
                 }
                 push_measure(
                     model,
@@ -145,12 +136,7 @@ fn check_budget(diagnostics: &mut Diagnostics, items: &[ExperimentItem]) {
         for ideal in ideals {
             let name = &ideal.name;
             if let Some(first) = known.iter().find(|known| known.text == name.text) {
-                let message = format!("the budget has `{}` twice", name.text);
-                let diagnostic = Diagnostic::error(Code::Duplicate, message)
-                    .label(name.span, "here again")
-                    .label(first.span, "here first")
-                    .help("give it another name, or combine all changes in one: `play(a.gap = 0, b.gap = 0)`");
-                diagnostics.push(diagnostic);
+                diagnostics.push(refused::twice_in_budget(name, first.span));
             }
             known.push(name);
         }
@@ -167,12 +153,8 @@ fn solve<'a>(
         "ida" => Method::Ida,
         "esdirk" => Method::Esdirk,
         "auto" => Method::Auto,
-        other => {
-            model.report(
-                Diagnostic::error(Code::BadSolve, format!("there is no method `{other}`"))
-                    .label(method.span, "not known")
-                    .help("methods are `ida`, `esdirk` and `auto`: `solve ida(rtol = 1e-6)`"),
-            );
+        _ => {
+            model.report(refused::unknown_method(method));
             Method::Ida
         }
     };
@@ -183,17 +165,11 @@ fn solve<'a>(
             continue;
         }
         if !matches!(name, "rtol" | "atol" | "max_step") {
-            model.report(
-                Diagnostic::error(Code::BadSolve, format!("the solver has no option `{name}`"))
-                    .label(
-                        argument
-                            .name
-                            .as_ref()
-                            .map_or(argument.value.span, |name| name.span),
-                        "not known",
-                    )
-                    .help("options are `rtol`, `atol`, `max_step` and `conserve`"),
-            );
+            let at = argument
+                .name
+                .as_ref()
+                .map_or(argument.value.span, |name| name.span);
+            model.report(refused::unknown_option(name, at));
             continue;
         }
         let value = model.value(&argument.value, &Scope::new(root, Setting::Parameter));
@@ -227,17 +203,7 @@ fn must_be_positive(
     if constant.is_none_or(|constant| constant > 0.0) {
         return;
     }
-    let usual = match name {
-        "rtol" => "rtol = 1e-6",
-        "atol" => "atol = 1e-9",
-        "max_step" => "max_step = 1 [ms]",
-        _ => "every 1 [ms]",
-    };
-    diagnostics.push(
-        Diagnostic::error(Code::BadSolve, format!("`{name}` must be positive"))
-            .label(span, "zero or less")
-            .help(format!("write `{usual}`, for example, or leave it out")),
-    );
+    diagnostics.push(refused::not_positive(name, span));
 }
 
 /// `conserve = true` or `conserve = false`.
@@ -246,11 +212,7 @@ fn conserve(flat: &mut FlatModel, diagnostics: &mut Diagnostics, value: &ast::Ex
         flat.experiment.conserve = truth;
         return;
     }
-    diagnostics.push(
-        Diagnostic::error(Code::BadSolve, "`conserve` is `true` or `false`")
-            .label(value.span, "neither of them")
-            .help("write `conserve = true` where energy must be kept over a long run, else leave it out"),
-    );
+    diagnostics.push(refused::conserve_is_no_truth(value.span));
 }
 
 fn agree_time(model: &mut Model<'_, '_>, value: &Typed, what: &'static str, instance: InstanceId) {

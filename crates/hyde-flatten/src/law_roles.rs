@@ -1,7 +1,8 @@
 //! The roles of the variables after `over` of a site: they say what a law of the site is.
 
 use crate::names::nearest;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::laws as refused;
+use hyde_diag::Diagnostic;
 use hyde_syntax::LawForm;
 use hyde_syntax::ast::{Argument, Declarator, Expr};
 
@@ -27,30 +28,15 @@ pub(crate) fn roles(declarator: &Declarator) -> Result<Roles<'_>, Refusal> {
     let all = FORMS.iter().flat_map(|(_, roles)| roles).copied();
     for argument in &declarator.over {
         let Some(role) = &argument.name else {
-            return Err(wrong(
-                "a variable of the law has no role".to_owned(),
-                argument.value.span,
-                "without a role",
-                every_form(),
-            ));
+            return Err(wrong(refused::no_role(argument.value.span, &every_form())));
         };
         let word = role.text.as_str();
         if word != HOLD && !all.clone().any(|known| known == word) {
             let near = nearest(word, all.clone().chain([HOLD]));
-            return Err(wrong(
-                format!("`{word}` is not a role of a variable of a law"),
-                role.span,
-                "not known",
-                near.map_or_else(every_form, |near| format!("did you mean `{near}`?")),
-            ));
+            return Err(wrong(refused::unknown_role(role, near, &every_form())));
         }
         if given.iter().any(|(known, _)| *known == word) {
-            return Err(wrong(
-                format!("`{word}` is given twice"),
-                role.span,
-                "the second time",
-                every_form(),
-            ));
+            return Err(wrong(refused::role_twice(role, &every_form())));
         }
         given.push((word, argument));
     }
@@ -65,20 +51,13 @@ pub(crate) fn roles(declarator: &Declarator) -> Result<Roles<'_>, Refusal> {
         (count == 2).then_some((*form, both))
     });
     let Some((form, both)) = form else {
-        return Err(wrong(
-            "these variables do not make a law".to_owned(),
+        return Err(wrong(refused::no_pair_of_roles(
             declarator.name.span,
-            "its law needs two variables",
-            every_form(),
-        ));
+            &every_form(),
+        )));
     };
     if let Some(hold) = hold.filter(|_| form != LawForm::Friction) {
-        return Err(wrong(
-            "only a friction holds at rest".to_owned(),
-            hold.span,
-            "the law has no `slip`",
-            "remove `hold`, or give the speed the role `slip`".to_owned(),
-        ));
+        return Err(wrong(refused::hold_without_slip(hold.span)));
     }
     Ok((form, both, hold))
 }
@@ -89,8 +68,7 @@ fn every_form() -> String {
     format!("the roles are {}", pairs.join(", "))
 }
 
-/// A refusal with its place, and what to write instead.
-pub(crate) fn wrong(message: String, span: Span, label: &str, help: String) -> Refusal {
-    let diagnostic = Diagnostic::error(Code::SiteVariables, message);
-    Some(Box::new(diagnostic.label(span, label).help(help)))
+/// A diagnostic as a refusal.
+pub(crate) fn wrong(diagnostic: Diagnostic) -> Refusal {
+    Some(Box::new(diagnostic))
 }

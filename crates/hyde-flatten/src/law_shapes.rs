@@ -21,11 +21,12 @@ use crate::instance::{Elementwise, InstanceId, Position, Scope, Setting, Typed};
 use crate::instantiate::quantity;
 use crate::law_roles::{Refusal, wrong};
 use crate::law_sites::full_name;
-use crate::model::{Model, listed};
+use crate::model::Model;
 use crate::names::{FileIndex, TypeName, nearest};
+use crate::refusals::laws as refused;
 use attributes::{attributes_of_output, constant_of_shape};
 use filter::filters;
-use hyde_diag::{Diagnostic, FileId, MadeBy, Span};
+use hyde_diag::{FileId, MadeBy, Span};
 use hyde_ir::{
     Expr as Ir, ExprArena, ExprId, FlatModel, Id as _, Index, LawAxis, LawConstant, LawInput,
     LawRole, LawShape, LawUnit, VarId, VariableKind,
@@ -111,12 +112,10 @@ fn law_shape<'a>(
         declared_in_shape(model, &mut draft, declaration, declarator)?;
     }
     if draft.shape.roles.is_empty() {
-        return Err(wrong(
-            format!("the shape `{}` has no role", class.name.text),
-            class.name.span,
-            "tried at no site",
-            format!("write `output Real f = … over (ROLE);`: {}", every_role()),
-        ));
+        return Err(wrong(refused::shape_without_role(
+            &class.name,
+            &every_role(),
+        )));
     }
     for number in 0..draft.declared.len() {
         constant_of_shape(model, &mut draft, number)?;
@@ -150,14 +149,7 @@ fn declared_in_shape<'a>(
     match (&declarator.binding, has(Prefix::Input)) {
         (None, true) => {
             let Some(input) = LawInput::named(name) else {
-                return Err(wrong(
-                    format!("the constant `{name}` of a shape has no value to begin with"),
-                    span,
-                    "neither a variable of a site nor with a value",
-                    format!(
-                        "write `{name} = {{…}} in … .. …`; the variables are `v`, `x`, `t`, `v1`, `x1`, `t1`, `v_max`, `x_min`, `x_max`, `t_min`, `t_max`"
-                    ),
-                ));
+                return Err(wrong(refused::constant_without_value(&declarator.name)));
             };
             if let LawInput::Variable(axis)
             | LawInput::Round(axis)
@@ -311,12 +303,11 @@ impl<'a> Draft<'a> {
             let known = LawRole::ALL.iter();
             let Some((role, _)) = known.into_iter().find(|(_, own)| Some(*own) == word) else {
                 let near = nearest(word.unwrap_or_default(), words);
-                return Err(wrong(
-                    "this is not a role of a shape".to_owned(),
+                return Err(wrong(refused::unknown_role_of_shape(
                     argument.value.span,
-                    "not known",
-                    near.map_or_else(every_role, |near| format!("did you mean `{near}`?")),
-                ));
+                    near,
+                    &every_role(),
+                )));
             };
             self.shape.roles.push(*role);
         }
@@ -326,24 +317,11 @@ impl<'a> Draft<'a> {
     /// The mark that a shape leaves.
     fn mark(&self, marks: &[Mark]) -> Result<(String, Option<usize>), Refusal> {
         let [(name, arguments)] = marks else {
-            return Err(wrong(
-                format!(
-                    "the shape `{}` has several signatures",
-                    self.class.name.text
-                ),
-                self.class.name.span,
-                "one is allowed",
-                "leave one of them".to_owned(),
-            ));
+            return Err(wrong(refused::several_signatures(&self.class.name)));
         };
         let marks: Vec<&str> = MARKS.iter().map(|(mark, _)| *mark).collect();
         if !marks.contains(&name.text.as_str()) {
-            return Err(wrong(
-                format!("`{}` is not a signature", name.text),
-                name.span,
-                "not known",
-                format!("the signatures are {}", listed(&marks)),
-            ));
+            return Err(wrong(refused::unknown_signature(name, &marks)));
         }
         let Some(argument) = arguments.first() else {
             return Ok((name.text.clone(), None));
@@ -352,13 +330,10 @@ impl<'a> Draft<'a> {
         let mut constants = self.shape.constants.iter();
         match constants.position(|constant| Some(constant.name.as_str()) == word) {
             Some(number) => Ok((name.text.clone(), Some(number))),
-            None => Err(wrong(
-                format!("the shape `{}` has no such constant", self.class.name.text),
+            None => Err(wrong(refused::signature_of_no_constant(
+                &self.class.name,
                 argument.value.span,
-                "not a constant of the shape",
-                "name a constant that says where the shape is, or remove the parentheses"
-                    .to_owned(),
-            )),
+            ))),
         }
     }
 }
@@ -401,16 +376,7 @@ fn elements<'a>(
         } else if let Element::Equation(equation) = element {
             equations.push(equation);
         } else if !matches!(element, Element::Signature(_)) {
-            return Err(wrong(
-                format!(
-                    "the shape `{}` has an element that is not allowed",
-                    class.name.text
-                ),
-                class.name.span,
-                "allowed are inputs, variables, outputs, filters and a signature",
-                "remove the element, or the signature: a function without one is not a shape"
-                    .to_owned(),
-            ));
+            return Err(wrong(refused::not_in_a_shape(&class.name)));
         }
     }
     Ok(found)
@@ -428,9 +394,4 @@ fn word(argument: &Argument) -> Option<&str> {
 fn every_role() -> String {
     let words = LawRole::ALL.map(|(_, word)| format!("`{word}`"));
     format!("the roles are {}", words.join(", "))
-}
-
-/// A diagnostic as a refusal.
-fn refused(diagnostic: Diagnostic) -> Refusal {
-    Some(Box::new(diagnostic))
 }

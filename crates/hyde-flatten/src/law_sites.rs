@@ -14,10 +14,11 @@ use crate::candidates::sites;
 use crate::instance::{InstanceId, Member};
 use crate::instantiate::InstanceTree;
 use crate::law_roles::{Refusal, roles, wrong};
-use crate::model::{Model, listed};
-use crate::names::{FileIndex, Names, nearest};
+use crate::model::Model;
+use crate::names::{FileIndex, Names};
+use crate::refusals::laws as refused;
 use crate::site::declared_with;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::{FlatModel, Quantity, VarId};
 use hyde_syntax::ast::{
     Class, ClassBody, ClassKind, Declaration, Declarator, Element, Expr, ExprKind, Prefix,
@@ -122,45 +123,22 @@ fn law_site<'a>(
     (file, declaration, declarator): Declared<'a>,
 ) -> Result<LawSite, Refusal> {
     let name = declarator.name.text.as_str();
-    let span = declarator.name.span;
     let instance = &model.tree[id];
     let connector = instance.class.kind == ClassKind::Connector;
     if !may_have_laws(declaration, connector) {
-        let (label, help) = match connector {
-            true => (
-                "not a `flow` variable",
-                format!("write `over` behind the `flow` variable instead of `{name}`"),
-            ),
-            false => (
-                "neither a site nor an input nor an output",
-                format!(
-                    "declare it as a site: `site {} {name} = … over (…);`",
-                    declaration.type_name.dotted()
-                ),
-            ),
-        };
-        let message = format!("no law can be added to `{name}`");
-        return Err(wrong(message, span, label, help));
+        return Err(wrong(match connector {
+            true => refused::no_flow(&declarator.name),
+            false => refused::no_site(&declarator.name, &declaration.type_name),
+        }));
     }
     if instance.outer.is_some() && instance.class.kind != ClassKind::Effect {
-        return Err(wrong(
-            format!("no law can be added to `{name}` in a clocked part"),
-            span,
-            "it changes only at ticks",
-            "remove `over`, or declare the site outside of the clocked part".to_owned(),
-        ));
+        return Err(wrong(refused::clocked_site(&declarator.name)));
     }
     let Some(Member::Variable(var)) = instance.members.get(name) else {
         return Err(None);
     };
     if !is_one_number(&model.flat, *var) {
-        return Err(wrong(
-            format!("no law can be added to `{name}`, which is not a single number"),
-            span,
-            "a law is a single number",
-            "declare a site for the element or the place of the field that a law may change"
-                .to_owned(),
-        ));
+        return Err(wrong(refused::several_numbers(&declarator.name)));
     }
     let (form, [first, second], hold) = roles(declarator)?;
     let over = [
@@ -254,15 +232,7 @@ fn variable_below(
                 let members = model.tree[at].members.keys();
                 let known: Vec<&str> = members.copied().collect();
                 let class = &model.tree[at].class.name.text;
-                let message = format!("there is no `{word}` in `{class}`");
-                let diagnostic = Diagnostic::error(Code::UnknownName, message);
-                let diagnostic = diagnostic.label(part.name.span, "not known");
-                return Err(Some(Box::new(diagnostic.help(
-                    match nearest(word, known.iter().copied()) {
-                        Some(near) => format!("did you mean `{near}`?"),
-                        None => format!("known here: {}", listed(&known)),
-                    },
-                ))));
+                return Err(wrong(refused::unknown_variable(&part.name, class, &known)));
             }
         }
     }
@@ -277,19 +247,13 @@ fn rate_agrees(over: &[LawVariable; 2], second: &Expr) -> Result<(), Refusal> {
         return Ok(());
     }
     let [first, _] = over;
-    Err(wrong(
-        format!("this is not a rate of `{}`", first.text()),
-        second.span,
-        &format!("in {}", own.usual_unit()),
-        match first.derivative {
-            true => format!("name a variable in {}", wanted.usual_unit()),
-            false => format!(
-                "write `der({})`, or a variable in {}",
-                first.name,
-                wanted.usual_unit()
-            ),
-        },
-    ))
+    let derivative = (!first.derivative).then_some(first.name.as_str());
+    Err(wrong(refused::not_a_rate(
+        &first.text(),
+        (second.span, &own.usual_unit()),
+        &wanted.usual_unit(),
+        derivative,
+    )))
 }
 
 /// The site that holds a friction at rest.
@@ -309,28 +273,18 @@ fn held_site(
         None
     };
     let Some(word) = word.filter(|word| names.contains(word)) else {
-        return Err(wrong(
-            "`hold` is not another site".to_owned(),
-            value.span,
-            "not another site of the class",
-            match names.as_slice() {
-                [] => "declare the force that holds at rest as a site".to_owned(),
-                names => format!(
-                    "name the force that holds at rest: one of {}",
-                    listed(names)
-                ),
-            },
-        ));
+        return Err(wrong(refused::holds_no_site(value.span, &names)));
     };
     if let Some(Member::Variable(var)) = tree[id].members.get(word) {
         let own = flat.variables[*var].quantity.dimension;
         if own.agreement(dimension) == Agreement::Different {
-            return Err(wrong(
-                format!("`{word}` cannot take the law of the site"),
-                value.span,
-                &format!("in {}", own.usual_unit()),
-                format!("name a site in {}", dimension.usual_unit()),
-            ));
+            let hold = (value.span, own.usual_unit());
+            let wanted = dimension.usual_unit();
+            return Err(wrong(refused::holds_another_dimension(
+                word,
+                (hold.0, &hold.1),
+                &wanted,
+            )));
         }
     }
     Ok(word.to_owned())
@@ -397,10 +351,5 @@ fn may_have_laws(declaration: &Declaration, connector: bool) -> bool {
 }
 
 fn not_a_variable(span: Span) -> Refusal {
-    wrong(
-        "a law is a function of variables".to_owned(),
-        span,
-        "not a variable of the class, nor the derivative of one",
-        "declare a variable with this value, and name it here".to_owned(),
-    )
+    wrong(refused::not_a_variable(span))
 }

@@ -4,9 +4,10 @@ use crate::dimension::Dim;
 use crate::equation::{lower_action, lower_equation};
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::instantiate::type_unit;
-use crate::model::{Model, listed};
+use crate::model::Model;
 use crate::names::TypeName;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy, Span};
+use crate::refusals::equations as refused;
+use hyde_diag::{Diagnostics, MadeBy};
 use hyde_ir::flat::{Action, Automaton, Mode, Transition};
 use hyde_ir::{Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{self, Argument};
@@ -14,11 +15,7 @@ use hyde_syntax::ast::{self, Argument};
 /// Lowers a `modes` block of an instance.
 pub(crate) fn lower_modes<'a>(model: &mut Model<'a, '_>, modes: &'a ast::Modes, id: InstanceId) {
     if model.clock_of(id).is_some() {
-        model.report(
-            Diagnostic::error(Code::ClockBorder, "`modes` inside a clocked part")
-                .label(modes.span, "everything here happens at the tick")
-                .help("write `x = if … then … else pre(x);`"),
-        );
+        model.report(refused::clocked_modes(modes.span));
         return;
     }
     let parameters: Vec<Vec<(&'a str, VarId)>> = modes
@@ -42,10 +39,7 @@ pub(crate) fn lower_modes<'a>(model: &mut Model<'a, '_>, modes: &'a ast::Modes, 
             .find(|equation| equation.range != Range::SCALAR)
         {
             let span = array.origin.span;
-            model.report(
-                Diagnostic::error(Code::ArrayEquation, "an array equation in a mode")
-                    .label(span, "modes have scalar equations"),
-            );
+            model.report(refused::array_in_mode(span));
         }
         let exits = mode
             .exits
@@ -192,18 +186,11 @@ fn mode_arguments<'a>(
     scope: &Scope<'a>,
 ) -> Vec<Action> {
     if arguments.len() != parameters.len() {
-        model.report(
-            Diagnostic::error(
-                Code::BadArguments,
-                format!(
-                    "the mode `{}` takes {} values, not {}",
-                    target.text,
-                    parameters.len(),
-                    arguments.len()
-                ),
-            )
-            .label(target.span, "entered here"),
-        );
+        model.report(refused::values_of_mode(
+            target,
+            parameters.len(),
+            arguments.len(),
+        ));
         return Vec::new();
     }
     let mut actions = Vec::new();
@@ -214,12 +201,7 @@ fn mode_arguments<'a>(
             Some(named) => match parameters.iter().find(|(known, _)| *known == named.text) {
                 Some((_, var)) => *var,
                 None => {
-                    let message = format!("the mode `{}` has no `{}`", target.text, named.text);
-                    model.report(
-                        Diagnostic::error(Code::BadArguments, message)
-                            .label(named.span, "unknown")
-                            .help(format!("it has `{name}`")),
-                    );
+                    model.report(refused::no_value_of_mode(&target.text, named, name));
                     continue;
                 }
             },
@@ -255,14 +237,7 @@ fn mode_named(
             .iter()
             .map(|mode| mode.name.text.as_str())
             .collect();
-        diagnostics.push(
-            Diagnostic::error(
-                Code::UnknownName,
-                format!("there is no mode `{}` here", name.text),
-            )
-            .label(name.span, "not known")
-            .help(format!("the modes are {}", listed(&known))),
-        );
+        diagnostics.push(refused::unknown_mode(name, &known));
     }
     found
 }
@@ -275,26 +250,8 @@ fn same_counts(diagnostics: &mut Diagnostics, modes: &ast::Modes, list: &[Mode])
         .zip(&modes.modes)
         .find(|(mode, _)| mode.equations.len() != first.equations.len());
     if let Some((mode, written)) = differing {
-        let count = |n: usize| {
-            if n == 1 {
-                "1 equation".to_owned()
-            } else {
-                format!("{n} equations")
-            }
-        };
-        let first_span: Span = modes.modes[0].name.span;
-        diagnostics.push(
-            Diagnostic::error(
-                Code::ModeEquations,
-                "the modes have different numbers of equations",
-            )
-            .label(
-                written.name.span,
-                format!("{} here", count(mode.equations.len())),
-            )
-            .label(first_span, format!("{} here", count(first.equations.len())))
-            .note("the modes replace each other's equations: each must determine the same unknowns")
-            .help("write an equation for the same variables in every mode: for a force that vanishes, `F = 0`"),
-        );
+        let own = (written.name.span, mode.equations.len());
+        let first = (modes.modes[0].name.span, first.equations.len());
+        diagnostics.push(refused::modes_differ(own, first));
     }
 }

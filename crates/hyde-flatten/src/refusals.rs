@@ -2,3 +2,9 @@
 
 pub(crate) mod allowed;
 pub(crate) mod connect;
+pub(crate) mod dimensions;
+pub(crate) mod effects;
+pub(crate) mod equations;
+pub(crate) mod experiment;
+pub(crate) mod laws;
+pub(crate) mod records;

@@ -2,30 +2,26 @@
 
 use crate::instance::{Instance, InstanceId, Member};
 use crate::instantiate::{InstanceTree, host_of, written};
-use crate::model::listed;
-use crate::names::{FileIndex, Names, nearest};
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::names::{FileIndex, Names};
+use crate::refusals::effects as refused;
+use hyde_diag::{Diagnostic, Span};
 use hyde_syntax::ast::{Class, Declaration, Element, Prefix, Reference};
 
 /// `E on giude`: follows the path as far as it goes, and tells what there is instead.
 pub(crate) fn no_place(tree: &InstanceTree<'_>, scope: InstanceId, site: &Reference) -> Diagnostic {
-    let diagnostic = Diagnostic::error(
-        Code::UnknownName,
-        format!("there is no `{}` to put the effect on", written(site)),
-    );
+    let whole = written(site);
     let mut at = scope;
     for part in &site.parts {
         let name = part.name.text.as_str();
         let span = part.name.span;
-        let is = |what: String| diagnostic.clone().label(span, what);
+
         let found = match tree[at].members.get(name) {
             Some(Member::Instance(inner)) if part.subscripts.is_empty() => {
                 at = *inner;
                 continue;
             }
             Some(Member::Instances(all)) if part.subscripts.is_empty() => {
-                is(format!("an array of {}", all.len()))
-                    .help(format!("name its elements: `{name}[1]`, …"))
+                refused::whole_array(&whole, (name, span), all.len())
             }
             Some(Member::Instances(all)) => {
                 let inside = all.iter().copied().find(|&id| {
@@ -39,15 +35,12 @@ pub(crate) fn no_place(tree: &InstanceTree<'_>, scope: InstanceId, site: &Refere
                     at = inner;
                     continue;
                 }
-                is(format!("an array of {}", all.len()))
+                refused::no_element(&whole, span, all.len())
             }
-            Some(Member::Instance(_)) => is("no array".to_owned()),
-            Some(Member::Variable(_)) => is("this is a variable".to_owned())
-                .help("effects are put on components and connectors"),
-            Some(Member::Parameter(_)) => is("this is a parameter".to_owned())
-                .help("effects are put on components and connectors"),
-            Some(Member::Domain(_)) => is("this is a domain".to_owned())
-                .help("effects are put on components and connectors"),
+            Some(Member::Instance(_)) => refused::no_array(&whole, span),
+            Some(Member::Variable(_)) => refused::on_no_component(&whole, span, "variable"),
+            Some(Member::Parameter(_)) => refused::on_no_component(&whole, span, "parameter"),
+            Some(Member::Domain(_)) => refused::on_no_component(&whole, span, "domain"),
             None => {
                 let members = tree[at].members.iter();
                 let parts: Vec<&str> = members
@@ -57,17 +50,12 @@ pub(crate) fn no_place(tree: &InstanceTree<'_>, scope: InstanceId, site: &Refere
                     .map(|(name, _)| *name)
                     .collect();
                 let class = &tree[at].class.name.text;
-                with_help(
-                    is(format!("`{class}` has no such component or connector")),
-                    name,
-                    &parts,
-                    "components and connectors here: ",
-                )
+                refused::no_such_part(&whole, &part.name, class, &parts)
             }
         };
         return found;
     }
-    diagnostic.label(site.span, "an effect cannot act here")
+    refused::cannot_act(&whole, site.span)
 }
 
 /// `Stribeck on body`, where `body` is no guide.
@@ -77,53 +65,23 @@ pub(crate) fn does_not_fit(
     (file, effect): (FileIndex, &Class),
     site: &Reference,
 ) -> Diagnostic {
-    let name = &effect.name.text;
     let Some(wanted) = host_of(effect) else {
-        return Diagnostic::error(
-            Code::WrongType,
-            format!("`{name}` does not declare its host"),
-        )
-        .label(effect.name.span, "no `on TYPE` follows")
-        .help(format!(
-            "for this site write `effect {name} on {}`",
-            tree[host].class.name.text
-        ));
+        return refused::no_host(&effect.name, &tree[host].class.name.text);
     };
     let Some((_, class)) = names.class(file, wanted) else {
         return names.unknown(file, wanted);
     };
     let own = &tree[host].class.name.text;
-    let site_name = written(site);
     let parts = names.parts_that_are((tree[host].file, tree[host].class), class);
-    let fits = match parts.as_slice() {
-        [] => "`hyde effects FILE` lists the sites where each effect fits".to_owned(),
-        [part] => format!("`{site_name}.{part}` is such a component"),
-        [part, other, ..] => format!("`{site_name}.{part}` and `{site_name}.{other}` are such"),
-    };
-    Diagnostic::error(
-        Code::WrongType,
-        format!("`{name}` does not fit on `{site_name}`"),
-    )
-    .label(site.span, format!("this is a `{own}`"))
-    .help(format!("`{name}` is for a `{}`; {fits}", wanted.dotted()))
+    let on = (written(site), own.as_str(), site.span);
+    refused::does_not_fit(&effect.name.text, wanted, (&on.0, on.1, on.2), &parts)
 }
 
 /// `add a.f = e;` of an effect that is not on a connector.
 pub(crate) fn nothing_to_join(host: &Instance<'_>, effect: &Class, added: Span) -> Diagnostic {
-    let own = &host.class.name.text;
-    let diagnostic = Diagnostic::error(
-        Code::WrongType,
-        format!(
-            "`{}` adds to a connector, and is on a model",
-            effect.name.text
-        ),
-    )
-    .label(added, "not a connector")
-    .help("declare it `on` the type of the connector, or `wrap` a site of the model");
-    match host_of(effect) {
-        Some(wanted) => diagnostic.label(wanted.span, format!("`{own}` is a model")),
-        None => diagnostic,
-    }
+    let wanted = host_of(effect).map(|wanted| wanted.span);
+    let host = (host.class.name.text.as_str(), wanted);
+    refused::adds_to_a_model(&effect.name.text, added, host)
 }
 
 /// `wrap x by e;` of a host in which x is no site; `declared` is where it is something else.
@@ -134,17 +92,10 @@ pub(crate) fn no_site(
     declared: Option<Span>,
 ) -> Diagnostic {
     let class = &tree[host].class.name.text;
-    let diagnostic = Diagnostic::error(
-        Code::UnknownName,
-        format!("`{class}` has no site `{}`", site.dotted()),
-    )
-    .label(site.span, "only sites, inputs and outputs can be wrapped");
     let sites = declared_with(tree, host, &[Prefix::Site, Prefix::Input, Prefix::Output]);
     match declared {
-        Some(span) => diagnostic
-            .label(span, "declared here, not as a site")
-            .help("declare it `site`"),
-        None => with_help(diagnostic, &site.dotted(), &sites, "sites there: "),
+        Some(span) => refused::not_a_site(class, site, span),
+        None => refused::no_site(class, site, &sites),
     }
 }
 
@@ -154,26 +105,8 @@ pub(crate) fn no_component(
     host: InstanceId,
     component: &Reference,
 ) -> Diagnostic {
-    let class = &tree[host].class.name.text;
-    let diagnostic = Diagnostic::error(
-        Code::UnknownName,
-        format!(
-            "`{class}` has no component `{}` to replace",
-            component.dotted()
-        ),
-    )
-    .label(component.span, "not found in the host");
     let known = declared_with(tree, host, &[Prefix::Replaceable]);
-    if known.is_empty() {
-        diagnostic.help("it has none that is `replaceable`")
-    } else {
-        with_help(
-            diagnostic,
-            &component.dotted(),
-            &known,
-            "replaceable there: ",
-        )
-    }
+    refused::nothing_to_replace(&tree[host].class.name.text, component, &known)
 }
 
 /// What an instance declares with one of these prefixes.
@@ -197,13 +130,4 @@ pub(crate) fn declared_with<'t>(
 fn has_one_of(declaration: &Declaration, prefixes: &[Prefix]) -> bool {
     let mut own = declaration.prefixes.iter();
     own.any(|prefix| prefixes.contains(prefix))
-}
-
-/// The nearest of the known names, or all of them.
-fn with_help(diagnostic: Diagnostic, name: &str, known: &[&str], all: &str) -> Diagnostic {
-    match nearest(name, known.iter().copied()) {
-        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-        None if known.is_empty() => diagnostic,
-        None => diagnostic.help(format!("{all}{}", listed(known))),
-    }
 }

@@ -5,10 +5,11 @@
 //! whole multiples. In a product three things are seen all the same: `2*pi*lead*phi` has the turn twice, `lead*f` is per
 //! radian and counts turns, and the sine of `f*time` is that of turns.
 
-use crate::dimension::{Dim, short};
+use crate::dimension::Dim;
 use crate::instance::Typed;
 use crate::model::quantity_of;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use crate::refusals::dimensions as refused;
+use hyde_diag::{Diagnostic, Diagnostics, Sources};
 use hyde_ir::FlatModel;
 use hyde_units::{AngleExponent, Dimension, with_angle_of};
 use std::f64::consts::TAU;
@@ -95,19 +96,7 @@ impl<'m> Sides<'m> {
             match one.turns {
                 Turns::TwoPi if is_per_angle(other) => return Turns::PerTurn,
                 Turns::PerTurn if is_turned(other) => {
-                    diagnostics.push(
-                        Diagnostic::warning(
-                            Code::AngleMismatch,
-                            "the factor 2*pi for one turn is applied twice",
-                        )
-                        .label(
-                            one.span,
-                            "2*pi times a quantity per radian: the advance of a turn",
-                        )
-                        .label(other.span, "times an angle in radians")
-                        .note("units such as mm/rev are converted to m/rad when they are read")
-                        .help("remove the `2*pi`"),
-                    );
+                    diagnostics.push(refused::turn_applied_twice(one.span, other.span));
                     return Turns::Plain;
                 }
                 Turns::Lost if has_no_angle(other) => return Turns::Lost,
@@ -138,15 +127,7 @@ impl<'m> Sides<'m> {
         else {
             return None;
         };
-        (has != wanted).then(|| {
-            Diagnostic::warning(Code::AngleMismatch, "a quantity per radian times turns per second: a factor 2*pi is missing")
-                .label(lost.span, "per radian, times a frequency")
-                .note("Hz and 1/min count turns; units such as mm/rev are converted to m/rad when they are read")
-                .help(format!(
-                    "write `2*pi*{}`, or give the frequency the unit of an angular velocity: `rpm`, `rev/s`",
-                    self.text_as_factor(lost)
-                ))
-        })
+        (has != wanted).then(|| refused::lost_turn(lost.span, &self.text_as_factor(lost)))
     }
 
     /// `sin(f*time)`: of turns.
@@ -155,12 +136,7 @@ impl<'m> Sides<'m> {
             return None;
         }
         let text = self.text_as_factor(argument);
-        let diagnostic = Diagnostic::warning(
-            Code::AngleMismatch,
-            format!("`{function}` of a number of turns: a factor 2*pi is missing"),
-        );
-        let diagnostic = diagnostic.label(argument.span, "a frequency times a time counts turns");
-        Some(diagnostic.help(format!("write `{function}(2*pi*{text})`")))
+        Some(refused::sine_of_turns(function, argument.span, &text))
     }
 
     fn text_as_factor(self, typed: &Typed) -> String {
@@ -206,22 +182,10 @@ impl<'m> Sides<'m> {
 
 fn turns_of_quotient(a: &Typed, b: &Typed, diagnostics: &mut Diagnostics) -> Turns {
     if is_per_angle(a) && b.turns == Turns::TwoPi {
-        diagnostics.push(
-            Diagnostic::warning(
-                Code::AngleMismatch,
-                "a quantity that is per radian already, over 2*pi",
-            )
-            .label(
-                a.span,
-                format!(
-                    "this is {}",
-                    a.dim.as_known().map_or_else(String::new, short)
-                ),
-            )
-            .label(b.span, "divides by the turn again")
-            .note("units such as mm/rev are converted to m/rad when they are read")
-            .help("remove the `2*pi`"),
-        );
+        diagnostics.push(refused::turn_divided_twice(
+            (a.span, a.dim.as_known()),
+            b.span,
+        ));
     }
     match a.turns {
         Turns::Lost if has_no_angle(b) => Turns::Lost,

@@ -7,8 +7,8 @@
 use crate::experiment::replayed;
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::refusals::effects as refused;
 use crate::site;
-use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{Index, Memo, VarId};
 use hyde_syntax::ast::{Element, Expr, ExprKind, Prefix, Reference};
 
@@ -146,17 +146,7 @@ fn wrap_equation(model: &mut Model<'_, '_>, number: usize) {
             Setting::Clocked,
         ),
         (None, None) => {
-            model.report(
-                Diagnostic::error(
-                    Code::NotYet,
-                    format!(
-                        "no single equation `{} = …` defines this site",
-                        site.dotted()
-                    ),
-                )
-                .label(site.span, "cannot be wrapped")
-                .help("give the site its value in one equation, its name on the left"),
-            );
+            model.report(refused::no_equation_to_wrap(site));
             return;
         }
     };

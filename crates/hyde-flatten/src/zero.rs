@@ -5,7 +5,8 @@
 
 use crate::instance::{Typed, VariableNotes};
 use crate::model::quantity_of;
-use hyde_diag::{Code, Diagnostic, Sources};
+use crate::refusals::dimensions as refused;
+use hyde_diag::{Diagnostic, Sources};
 use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
 
 /// What is known of the zero point of a value.
@@ -65,11 +66,7 @@ pub(crate) fn added_as_difference(
         .dim
         .as_known()
         .map_or_else(String::new, |dim| dim.usual_unit());
-    let message = "a temperature with its zero point is added as a difference";
-    let diagnostic = Diagnostic::warning(Code::ZeroPoint, message)
-        .label(literal.span, "adds its zero point as well")
-        .help(format!("write `{number} [{unit}]` for a difference"));
-    Some(diagnostic)
+    Some(refused::zero_point_added(literal.span, number, &unit))
 }
 
 /// What is set to a difference is shown as one: in K where its type says degC.

@@ -9,7 +9,8 @@
 use super::lower_equation;
 use crate::instance::Scope;
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::equations as refused;
+use hyde_diag::Span;
 use hyde_ir::flat::Equation;
 use hyde_ir::{Expr as Ir, ExprId, FlatModel};
 use hyde_syntax::ast::{self, Expr};
@@ -62,14 +63,7 @@ pub(super) fn if_equation<'a>(
     let counts: Vec<usize> = lists.iter().map(Vec::len).collect();
     if counts.iter().any(|count| *count != counts[0]) {
         let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
-        model.report(
-            Diagnostic::error(
-                Code::ModeEquations,
-                "the branches have different numbers of equations",
-            )
-            .label(span, format!("{} equations", counts.join(", ")))
-            .help("every branch, `else` too, determines the same variables"),
-        );
+        model.report(refused::branches_differ(span, &counts));
         return Vec::new();
     }
     (0..counts[0])

@@ -9,8 +9,9 @@ use crate::allowed::check_whole;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::lower::Resolved;
+use crate::refusals::equations as refused;
 use crate::zero;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::flat::{Action, When};
 use hyde_ir::{Expr as Ir, Index, VariableKind};
 use hyde_syntax::ast::{self, EquationKind, Expr, ExprKind};
@@ -22,11 +23,7 @@ pub(super) fn when<'a>(
     span: Span,
 ) {
     if scope.setting == Setting::Clocked {
-        model.report(
-            Diagnostic::error(Code::ClockBorder, "`when` inside a clocked part")
-                .label(span, "everything here happens at the tick")
-                .help("write `x = if … then … else pre(x);`"),
-        );
+        model.report(refused::clocked_when(span));
         return;
     }
     let mut list = Vec::new();
@@ -69,18 +66,12 @@ pub(crate) fn lower_action<'a>(
         | EquationKind::If { .. }
         | EquationKind::When(_)
         | EquationKind::Assert(..) => {
-            model.report(
-                Diagnostic::error(Code::Misplaced, "an event sets variables one by one")
-                    .label(equation.span, "neither `reinit(x, e)` nor `d = e`"),
-            );
+            model.report(refused::not_an_action(equation.span));
             return None;
         }
     };
     let Some(Resolved::Variable(var, index)) = model.resolve(target, scope) else {
-        model.report(
-            Diagnostic::error(Code::WrongType, "no variable to set")
-                .label(target.span, "not a variable"),
-        );
+        model.report(refused::sets_no_variable(target.span));
         return None;
     };
     let index = index.unwrap_or(Index::SCALAR);
@@ -104,25 +95,11 @@ pub(crate) fn lower_action<'a>(
         (true, VariableKind::Continuous) => Some(Action::Reinit(var, index, value.id)),
         (false, VariableKind::Discrete) => Some(Action::Assign(var, index, value.id)),
         (true, _) => {
-            model.report(
-                Diagnostic::error(
-                    Code::WrongType,
-                    format!("`{}` is not a state", target.dotted()),
-                )
-                .label(target.span, "only a state can be reinitialised")
-                .help("set a discrete variable with `=`"),
-            );
+            model.report(refused::reinit_of_no_state(target));
             None
         }
         (false, _) => {
-            model.report(
-                Diagnostic::error(
-                    Code::WrongType,
-                    format!("`{}` is continuous", target.dotted()),
-                )
-                .label(target.span, "an event cannot equate it")
-                .help("let a state jump with `reinit(x, e)`"),
-            );
+            model.report(refused::sets_continuous(target));
             None
         }
     }

@@ -9,7 +9,8 @@ use super::lower_equation;
 use crate::instance::{Counter, Scope};
 use crate::model::Model;
 use crate::model::bind::short;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use crate::refusals::equations as refused;
+use hyde_diag::{Diagnostics, Span};
 use hyde_ir::flat::Equation;
 use hyde_ir::{Expr as Ir, FlatModel, Range};
 use hyde_syntax::ast::{self, EquationKind, Expr};
@@ -83,14 +84,7 @@ pub(super) fn for_equation<'a>(
 /// Whether so many elements are not too many to have an equation each; reported if they are.
 pub(crate) fn can_unroll(diagnostics: &mut Diagnostics, turns: usize, span: Span) -> bool {
     if turns > MAX_UNROLLED {
-        diagnostics.push(
-            Diagnostic::error(
-                Code::ArrayEquation,
-                format!("a loop over components of {turns} turns"),
-            )
-            .label(span, format!("unrolled at most {MAX_UNROLLED} times"))
-            .help("use arrays of variables in one component: their equations are not unrolled"),
-        );
+        diagnostics.push(refused::long_loop(span, turns, MAX_UNROLLED));
     }
     turns <= MAX_UNROLLED
 }
@@ -126,17 +120,12 @@ fn in_bounds(
             if usize::try_from(at).is_ok_and(|at| at < len) {
                 continue;
             }
-            let message = format!("`{}` has no element {}", short(name), at + base);
-            diagnostics.push(
-                Diagnostic::error(Code::BadShape, message)
-                    .label(
-                        equation.origin.span,
-                        format!("reached for a counter of {counter}"),
-                    )
-                    .help(format!(
-                        "the array has {len} elements: change the bounds of the loop"
-                    )),
-            );
+            let element = (short(name), at + base);
+            diagnostics.push(refused::no_element(
+                element,
+                len,
+                (equation.origin.span, counter),
+            ));
             return None;
         }
     }

@@ -5,8 +5,9 @@ use super::stepped::stepped;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::lower::Resolved;
-use crate::model::{Model, listed, quantity_of};
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use crate::model::{Model, quantity_of};
+use crate::refusals::experiment as refused;
+use hyde_diag::{Diagnostics, MadeBy};
 use hyde_ir::flat::{Bode, Moment};
 use hyde_ir::{ExprId, FlatModel, Quantity};
 use hyde_syntax::ast::{self, Reference};
@@ -18,16 +19,7 @@ pub(super) fn lower_bode<'a>(model: &mut Model<'a, '_>, bode: &'a ast::Bode, roo
     let driven = match model.resolve(input, &scope) {
         Some(Resolved::Variable(var, None)) if model.flat.variables[var].input => var,
         _ => {
-            model.report(
-                Diagnostic::error(
-                    Code::NotAnInput,
-                    format!("`{}` is not an input", input.dotted()),
-                )
-                .label(
-                    input.span,
-                    "a frequency response starts at an input of the model",
-                ),
-            );
+            model.report(refused::response_of_no_input(&input.dotted(), input.span));
             return;
         }
     };
@@ -154,12 +146,8 @@ fn mode_of(
             .iter()
             .map(|automaton| automaton.name.as_str())
             .collect();
-        let help = format!("modes are in {}", listed(&known));
-        diagnostics.push(
-            Diagnostic::error(Code::UnknownName, format!("`{path}` has no modes"))
-                .label(name.span, "no `modes` block")
-                .help(help),
-        );
+
+        diagnostics.push(refused::no_modes(name, &known));
         return None;
     };
     let number = automaton
@@ -172,15 +160,8 @@ fn mode_of(
             .iter()
             .map(|mode| mode.name.as_str())
             .collect();
-        let help = format!("its modes are {}", listed(&known));
-        diagnostics.push(
-            Diagnostic::error(
-                Code::UnknownName,
-                format!("`{path}` has no mode `{}`", mode.text),
-            )
-            .label(mode.span, "not known")
-            .help(help),
-        );
+
+        diagnostics.push(refused::no_mode(&path, mode, &known));
     }
     Some((id, number?))
 }

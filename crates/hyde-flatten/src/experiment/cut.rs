@@ -14,12 +14,11 @@ use crate::FreeInputs;
 use crate::instance::{InstanceId, Scope, Setting};
 use crate::model::Model;
 use crate::model::lower::Resolved;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use crate::refusals::experiment as refused;
+use hyde_diag::MadeBy;
 use hyde_ir::flat::{ClockedEquation, Cut, Equation};
 use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Memo, Range, VarId, VariableKind};
 use hyde_syntax::ast::{self, Reference};
-
-const HELP: &str = "open the loop at an input, an output, a clocked variable or a variable declared with its value; if there is none, add one to the loop: `Angle measured = rotor.phi;`";
 
 /// The equation that gives a signal.
 #[derive(Clone, Copy)]
@@ -86,35 +85,19 @@ fn giver_of<'a>(
         | Resolved::Value(_)
         | Resolved::Coordinate
         | Resolved::Instance(_) => {
-            cannot_cut(
-                model.diagnostics,
-                signal,
-                "is not a signal",
-                "not a variable of the model",
-            );
+            model.report(refused::cuts_no_signal(signal));
             return None;
         }
     };
     let len = model.flat.variables[var].len;
     let Some(index) = index.or(len.is_none().then_some(Index::SCALAR)) else {
-        cannot_cut(
-            model.diagnostics,
-            signal,
-            "is an array",
-            "name one of its elements",
-        );
+        model.report(refused::cuts_array(signal));
         return None;
     };
     let leaf = model.flat.exprs.add(Ir::Var(var, index));
     let giver = given_by(model, var, leaf);
     if giver.is_none() {
-        let label = "no equation of its own: `name = …`";
-        cannot_cut(
-            model.diagnostics,
-            signal,
-            "has no equation of its own",
-            label,
-        );
+        model.report(refused::cuts_no_equation(signal));
     }
     Some((var, giver?))
 }
@@ -270,13 +253,4 @@ fn of_held_values(
     let clock = found?;
     let sampled = model.flat.exprs.rewrite(id, &mut memo, |_, _, _| None);
     Some((clock, sampled))
-}
-
-fn cannot_cut(diagnostics: &mut Diagnostics, signal: &Reference, what: &str, label: &str) {
-    let message = format!(
-        "`{}` {what}: a loop cannot be opened there",
-        signal.dotted()
-    );
-    let diagnostic = Diagnostic::error(Code::CannotCut, message);
-    diagnostics.push(diagnostic.label(signal.span, label).help(HELP));
 }

@@ -5,7 +5,7 @@ use super::bode::shown_quantity;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use crate::refusals::experiment as refused;
 use hyde_ir::flat::{Curve, Figure, FigureKind};
 use hyde_syntax::ast::{self, Argument, Expr, ExprKind};
 use hyde_units::Dimension;
@@ -18,11 +18,7 @@ pub(super) fn lower_figure<'a>(
     let name = &figure.name;
     let known = &mut model.flat.experiment.figures;
     if known.iter().any(|known| known.name == name.text) {
-        let message = format!("there is already a figure `{}`", name.text);
-        let diagnostic = Diagnostic::error(Code::Duplicate, message)
-            .label(name.span, "its files would overwrite those of the first")
-            .help("give it another name");
-        model.report(diagnostic);
+        model.report(refused::figure_twice(name));
         return;
     }
     let kind = match figure.panels.as_slice() {
@@ -63,11 +59,7 @@ fn lower_panels<'a>(
             std::slice::from_ref(panel)
         };
         if circle_of(panel).is_some() {
-            let message = "a circle is combined with other panels";
-            let diagnostic = Diagnostic::error(Code::BadArguments, message)
-                .label(panel.span, "its axes are lengths, not times")
-                .help("use a separate figure: `figure contour = circle(x, y, R);`");
-            model.report(diagnostic);
+            model.report(refused::circle_among_panels(panel.span));
             return Vec::new();
         }
         let curves: Vec<(Curve, Typed)> = list.iter().map(|one| curve(model, one, root)).collect();
@@ -90,29 +82,15 @@ fn circle_figure<'a>(
     let arguments = circle_of(call)?;
     let positional = arguments.iter().all(|argument| argument.name.is_none());
     let [x, y, radius] = arguments else {
-        not_a_circle(
-            model.diagnostics,
-            call,
-            "`circle` takes x, y and the radius",
-        );
+        model.report(refused::circle_takes_three(call.span));
         return None;
     };
     if !positional {
-        not_a_circle(
-            model.diagnostics,
-            call,
-            "the arguments of `circle` have no names",
-        );
+        model.report(refused::named_arguments_of_circle(call.span));
         return None;
     }
     if let Some(over) = &figure.over {
-        let diagnostic = Diagnostic::error(
-            Code::BadArguments,
-            "a circle cannot be plotted over another variable",
-        )
-        .label(over.span, "x and y are its axes")
-        .help("leave out `over`");
-        model.report(diagnostic);
+        model.report(refused::circle_over(over.span));
     }
     let (x, of_x) = curve(model, &x.value, root);
     let (y, of_y) = curve(model, &y.value, root);
@@ -129,13 +107,6 @@ fn circle_figure<'a>(
         model.agree(&length, given, "a circle has lengths, found", root);
     }
     Some(FigureKind::Circle([x, y], radius.id))
-}
-
-fn not_a_circle(diagnostics: &mut Diagnostics, call: &Expr, message: &str) {
-    let diagnostic = Diagnostic::error(Code::BadArguments, message)
-        .label(call.span, "x and y are relative to the centre")
-        .help("write `circle(x, y - 25 [mm], 25 [mm])`");
-    diagnostics.push(diagnostic);
 }
 
 fn curve<'a>(model: &mut Model<'a, '_>, expr: &'a Expr, root: InstanceId) -> (Curve, Typed) {

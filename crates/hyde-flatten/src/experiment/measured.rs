@@ -8,7 +8,8 @@ use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::call::clocks_of;
 use crate::model::lower::Resolved;
-use hyde_diag::{Code, Diagnostic, MadeBy};
+use crate::refusals::records as refused;
+use hyde_diag::MadeBy;
 use hyde_ir::flat::{Measured, Preparation};
 use hyde_ir::{ColumnId, Quantity, VariableKind};
 use hyde_syntax::ast::{self, Channel, Expr, ExprKind};
@@ -114,17 +115,7 @@ pub(super) fn recorded<'a>(
                 if let VariableKind::Column(column, _) = model.flat.variables[var].kind {
                     return Some((column, model.dim(var)));
                 }
-                model.report(
-                    Diagnostic::error(
-                        Code::NoColumn,
-                        format!("`{}` is not a column of a record", reference.dotted()),
-                    )
-                    .label(
-                        expr.span,
-                        "the left side of `=` must be the measured column",
-                    )
-                    .help("write `measured file.x = saddle.s;`"),
-                );
+                model.report(refused::not_a_column(reference, expr.span));
             }
             None
         }
@@ -148,13 +139,7 @@ pub(super) fn recorded<'a>(
                 Some((column, dim.divide(&Dim::known(Dimension::TIME))))
             }
             _ => {
-                model.report(
-                    Diagnostic::error(
-                        Code::BadArguments,
-                        "a record is prepared with `lowpass(x, f)`, `slope(x)`, or a factor",
-                    )
-                    .label(expr.span, "not one of these"),
-                );
+                model.report(refused::unknown_preparation(expr.span));
                 None
             }
         },
@@ -180,14 +165,7 @@ pub(super) fn recorded<'a>(
         | ExprKind::Array(..)
         | ExprKind::Comprehension(_)
         | ExprKind::Slice(..) => {
-            model.report(
-                Diagnostic::error(
-                    Code::NoColumn,
-                    "the measured quantity must be a column of a record",
-                )
-                .label(expr.span, "no column")
-                .help("write `measured file.x = saddle.s;`"),
-            );
+            model.report(refused::measures_no_column(expr.span));
             None
         }
     }

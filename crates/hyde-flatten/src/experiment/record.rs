@@ -3,15 +3,14 @@
 use crate::Input;
 use crate::dimension::Dim;
 use crate::instance::{ParameterNotes, Scope, Setting};
+use crate::model::Model;
 use crate::model::lower::Resolved;
-use crate::model::{Model, listed};
-use crate::names::nearest;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy, Span};
+use crate::refusals::records as refused;
+use hyde_diag::{Diagnostics, MadeBy, Span};
 use hyde_ir::{
     Column, ColumnId, FlatModel, Interpolation, Parameter, Quantity, VarId, VariableKind,
 };
 use hyde_syntax::ast::Reference;
-use hyde_syntax::member;
 use hyde_units::{Allowed, Dimension, NamedUnit, unit_in_name};
 use std::collections::BTreeMap;
 
@@ -26,11 +25,7 @@ pub(crate) fn record_column<'a>(
         [_, column] => (column.name.text.as_str(), None),
         [_, column, suffix] => (column.name.text.as_str(), Some(suffix.name.text.as_str())),
         _ => {
-            model.report(
-                Diagnostic::error(Code::NoColumn, "which column of the record?")
-                    .label(reference.span, "names a record")
-                    .help(format!("write `{record}.column`")),
-            );
+            model.report(refused::which_column(&record, reference.span));
             return None;
         }
     };
@@ -51,11 +46,11 @@ pub(crate) fn record_column<'a>(
     let unusable =
         header.and_then(|header| header.unusable.iter().find(|(name, ..)| name == column));
     if let Some((_, message, repair)) = unusable.filter(|_| sparse.is_none()) {
-        let message = format!("the record `{record}`: {message}");
-        let diagnostic = Diagnostic::error(Code::BadRecord, message)
-            .label(reference.span, "read here")
-            .help(repair);
-        model.report(diagnostic);
+        model.report(refused::unusable_column(
+            &record,
+            reference.span,
+            (message, repair),
+        ));
         return None;
     }
     let Some(unit) = known else {
@@ -68,41 +63,11 @@ pub(crate) fn record_column<'a>(
                     .collect()
             })
             .unwrap_or_default();
-        let near = nearest(column, names.iter().copied());
-        let diagnostic = Diagnostic::error(
-            Code::NoColumn,
-            format!("the record `{record}` has no column `{column}`"),
-        )
-        .label(
-            reference
-                .parts
-                .get(1)
-                .map_or(reference.span, |part| part.name.span),
-            "not in its header",
-        );
-        let diagnostic = match near {
-            Some(near) => diagnostic
-                .note(format!("its columns are {}", listed(&names)))
-                .help(match member(near) {
-                name if name == near => format!("did you mean `{record}.{name}`?"),
-                name => format!(
-                    "did you mean `{record}.{name}`? A name that is not a word is written in quotes"
-                ),
-            }),
-            None if names.is_empty() => {
-                diagnostic.help("the record was not given: `--record NAME=PATH`")
-            }
-            None => {
-                let written: Vec<_> = names.iter().map(|name| member(name)).collect();
-                let written: Vec<&str> = written.iter().map(|name| &**name).collect();
-                let quoted = match written == names {
-                    true => "",
-                    false => "; a name that is not a word is written in quotes",
-                };
-                diagnostic.help(format!("its columns are {}{quoted}", listed(&written)))
-            }
-        };
-        model.report(diagnostic);
+        let at = reference
+            .parts
+            .get(1)
+            .map_or(reference.span, |part| part.name.span);
+        model.report(refused::no_column((&record, column), at, &names));
         return None;
     };
     match suffix {
@@ -126,11 +91,7 @@ pub(crate) fn record_column<'a>(
             None,
         )),
         Some(other) => {
-            model.report(
-                Diagnostic::error(Code::NoColumn, format!("a column has no `{other}`"))
-                    .label(reference.span, "unknown")
-                    .help("write `.next` for the value of the next sample, `.first` for the first, `.mean` for the mean"),
-            );
+            model.report(refused::no_part_of_column(other, reference.span));
             None
         }
     }
@@ -221,16 +182,8 @@ pub(crate) fn report_units_in_names(
         };
         let record = &column.record;
         let taken = NamedUnit::usual(variable.quantity.dimension);
-        let message = format!(
-            "`{record}.{}` has no unit: is it in {taken}, or in {unit} as its name says?",
-            member(name)
-        );
-        let diagnostic = Diagnostic::error(Code::BadRecord, message)
-            .label(variable.origin.span, format!("read in {taken} here"))
-            .help(format!(
-                "say the unit: `record {record}(column = {name:?} in [{unit}])`, or `in [{taken}]`"
-            ));
-        diagnostics.push(diagnostic);
+        let read = variable.origin.span;
+        diagnostics.push(refused::unit_in_name((record, name), read, (&taken, &unit)));
     }
 }
 

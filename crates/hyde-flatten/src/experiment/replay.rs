@@ -15,7 +15,8 @@ use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::call::clocks_of;
 use crate::model::lower::Resolved;
-use hyde_diag::{Code, Diagnostic, MadeBy};
+use crate::refusals::records as refused;
+use hyde_diag::MadeBy;
 use hyde_ir::flat::Measured;
 use hyde_ir::{Expr as Ir, ExprId, FlatModel, Interpolation, Memo, VarId, VariableKind};
 use hyde_syntax::ast::{Drive, ExperimentItem};
@@ -211,15 +212,7 @@ fn span_of(model: &Model<'_, '_>, replay: usize) -> hyde_diag::Span {
 
 fn no_equation_to_replay(model: &mut Model<'_, '_>, number: usize) {
     let Replay { drive, .. } = model.replays[number];
-    model.report(
-        Diagnostic::error(
-            Code::CannotReplay,
-            format!("`{}` has no equation of its own", drive.target.dotted()),
-        )
-        .label(drive.target.span, "cannot be replayed")
-        .note("a replayed column replaces the one equation that determines its variable")
-        .help("replay an input, an output, or a variable declared with a value: `site Force force = …;`"),
-    );
+    model.report(refused::nothing_to_replay(&drive.target));
 }
 
 /// Whether a variable changes at instants only: clocked, or made of held values.

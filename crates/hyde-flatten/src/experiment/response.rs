@@ -8,13 +8,12 @@ use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::lower::Resolved;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use crate::refusals::records as refused;
+use hyde_diag::{Diagnostics, MadeBy};
 use hyde_ir::flat::{Bode, MeasuredResponse, Preparation, RecordedResponse, ScaledColumn};
 use hyde_ir::{FlatModel, VarId};
 use hyde_syntax::ast::{Channel, ExperimentItem, Expr, ExprKind};
 use hyde_units::Dimension;
-
-const HELP: &str = "write `response(file.u, file.y)` with columns over time, or `complex(frf.re, frf.im)` or `polar(frf.gain, frf.phase)` with columns over frequency";
 
 /// Whether a channel compares frequency responses.
 pub(super) fn is_response(channel: &Channel) -> bool {
@@ -95,14 +94,7 @@ fn of_model<'a>(
     let scope = Scope::new(root, Setting::Report);
     let (_, arguments) = call(expr)?;
     let [input, output] = arguments.as_slice() else {
-        model.report(
-            Diagnostic::error(
-                Code::BadArguments,
-                "`response` takes an input of the model and a variable that responds to it",
-            )
-            .label(expr.span, "not two arguments")
-            .help("write `response(i, motor.phi)`"),
-        );
+        model.report(refused::response_takes_two(expr.span));
         return None;
     };
     let driven = match &input.kind {
@@ -123,12 +115,9 @@ fn of_model<'a>(
     };
     let Some(driven) = driven else {
         let name = hyde_syntax::format_expression(input);
-        model.report(
-            Diagnostic::error(Code::NotAnInput, format!("`{name}` is not an input")).label(
-                input.span,
-                "a frequency response starts at an input of the model",
-            ),
-        );
+        model.report(crate::refusals::experiment::response_of_no_input(
+            &name, input.span,
+        ));
         return None;
     };
     let value = model.value(output, &scope);
@@ -184,11 +173,7 @@ fn recorded_response<'a>(
             Some((RecordedResponse::Periodic(u, y, period), dim))
         }
         _ => {
-            model.report(
-                Diagnostic::error(Code::BadResponse, "this is not a measured response")
-                    .label(expr.span, "cannot be compared with a frequency response")
-                    .help(HELP),
-            );
+            model.report(refused::not_a_response(expr.span));
             None
         }
     }
@@ -213,10 +198,7 @@ fn one_record(
     if first == second {
         return Some(());
     }
-    diagnostics.push(
-        Diagnostic::error(Code::BadResponse, "a response is measured in one record")
-            .label(expr.span, format!("columns of `{first}` and of `{second}`")),
-    );
+    diagnostics.push(refused::two_records(expr.span, &first, &second));
     None
 }
 
@@ -233,13 +215,7 @@ fn scaled_column<'a>(
         match step {
             Preparation::Scale(factor) => scale *= factor,
             Preparation::Lowpass(_) | Preparation::Slope => {
-                model.report(
-                    Diagnostic::error(
-                        Code::BadResponse,
-                        "a column of a measured response may only be multiplied by a factor",
-                    )
-                    .label(expr.span, "filtered"),
-                );
+                model.report(refused::filtered_response(expr.span));
                 return None;
             }
         }
@@ -278,11 +254,7 @@ fn report_over_frequency(model: &mut Model<'_, '_>) {
         })
         .collect();
     for (name, span) in wrong {
-        model.report(
-            Diagnostic::error(Code::BadRecord, format!("`{name}` is over frequency, not over time"))
-                .label(span, "read over time")
-                .help("only a measured response has such a record: `measured complex(frf.re, frf.im) = response(u, y);`"),
-        );
+        model.report(refused::over_frequency(&name, span));
     }
 }
 

@@ -7,8 +7,9 @@
 use super::stimulus::outer_parameter;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
-use crate::model::{Model, listed};
-use hyde_diag::{Code, Diagnostic, MadeBy};
+use crate::model::Model;
+use crate::refusals::experiment as refused;
+use hyde_diag::MadeBy;
 use hyde_ir::flat::{Equation, Stepped};
 use hyde_ir::{BinaryOp, Expr as Ir, ExprId, Quantity, Range, UnaryOp, VarId};
 use hyde_syntax::ast::{self, Argument, ExperimentItem, Expr};
@@ -35,26 +36,15 @@ pub(super) fn stepped<'a>(
     root: InstanceId,
 ) -> Option<Stepped> {
     if method.text != "stepped" {
-        model.report(
-            Diagnostic::error(
-                Code::BadSolve,
-                format!("no response is measured by `{}`", method.text),
-            )
-            .label(method.span, "not known")
-            .help("write `by stepped(amplitude = …)`; a swept sine is the stimulus itself"),
-        );
+        model.report(refused::unknown_steps(method));
         return None;
     }
     for argument in arguments {
         let name = argument.name.as_ref();
         if !name.is_some_and(|name| OPTIONS.contains(&name.text.as_str())) {
             let span = name.map_or(argument.value.span, |name| name.span);
-            let known: Vec<&str> = OPTIONS.to_vec();
-            model.report(
-                Diagnostic::error(Code::BadSolve, "`stepped` has no such option")
-                    .label(span, "not known")
-                    .help(format!("its options are {}", listed(&known))),
-            );
+
+            model.report(refused::unknown_option_of_steps(span, &OPTIONS));
             return None;
         }
     }
@@ -64,11 +54,7 @@ pub(super) fn stepped<'a>(
         found.map(|argument| &argument.value)
     };
     let Some(amplitude) = given("amplitude") else {
-        model.report(
-            Diagnostic::error(Code::BadSolve, "a stepped sine has an amplitude")
-                .label(method.span, "none is given")
-                .help("write `by stepped(amplitude = 0.25 [V])`, in the unit of the input"),
-        );
+        model.report(refused::no_amplitude(method.span));
         return None;
     };
     let dim = model.dim(input);
@@ -91,11 +77,7 @@ pub(super) fn stepped<'a>(
         (None, None) => None,
         (Some(output), Some(level)) => Some(kept(model, output, level, outputs, root)?),
         (Some(alone), None) | (None, Some(alone)) => {
-            model.report(
-                Diagnostic::error(Code::BadSolve, "`keep` and `level` go together")
-                    .label(alone.span, "alone here")
-                    .help("write `keep = table.acc, level = 1 [m/s2]`"),
-            );
+            model.report(refused::keep_without_level(alone.span));
             return None;
         }
     };
@@ -119,14 +101,7 @@ fn kept<'a>(
 ) -> Option<(usize, ExprId)> {
     let text = hyde_syntax::format_expression(output);
     let Some(number) = outputs.iter().position(|known| *known == text) else {
-        model.report(
-            Diagnostic::error(
-                Code::BadSolve,
-                format!("`{text}` is not one of the responses"),
-            )
-            .label(output.span, "cannot be kept at a level")
-            .help(format!("the responses are {}", listed(outputs))),
-        );
+        model.report(refused::keeps_no_response(&text, output.span, outputs));
         return None;
     };
     let kept = model.value(output, &Scope::new(root, Setting::Report));

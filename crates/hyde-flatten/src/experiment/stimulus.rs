@@ -6,9 +6,9 @@ use crate::FreeInputs;
 use crate::allowed::check_whole;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Member, ParameterNotes, Scope, Setting, Typed};
-use crate::model::bind::short;
-use crate::model::{Model, listed};
-use hyde_diag::{Code, Diagnostic, MadeBy, Origin};
+use crate::model::Model;
+use crate::refusals::experiment as refused;
+use hyde_diag::{MadeBy, Origin};
 use hyde_ir::flat::{Equation, Preparation};
 use hyde_ir::{
     Expr as Ir, ExprId, FlatModel, Id as _, Parameter, Quantity, Range, VarId, VariableKind,
@@ -37,21 +37,11 @@ pub(super) fn stimulus<'a>(model: &mut Model<'a, '_>, drive: &'a Drive, root: In
             .filter(|(_, member)| matches!(member, Member::Variable(var) if is_input(*var) && !is_bound(*var)))
             .map(|(name, _)| *name)
             .collect();
-        let diagnostic = Diagnostic::error(
-            Code::NotAnInput,
-            format!(
-                "`{}` is not a free input of the model",
-                drive.target.dotted()
-            ),
-        )
-        .label(drive.target.span, "cannot be driven");
-        model.report(if input.is_some() {
-            diagnostic.help("it has a value in the model: take that away, and it can be driven")
-        } else if inputs.is_empty() {
-            diagnostic.help("declare it in the model: `input Length r;`")
-        } else {
-            diagnostic.help(format!("its inputs are {}", listed(&inputs)))
-        });
+        model.report(refused::not_a_free_input(
+            &drive.target,
+            input.is_some(),
+            &inputs,
+        ));
         return;
     };
     // A stepped sine takes its place.
@@ -114,20 +104,10 @@ pub(super) fn noise_of_column<'a>(
     };
     let factors: Option<Vec<f64>> = steps.iter().map(factor).collect();
     let (Some((column, _)), Some(factors)) = (column, factors) else {
-        model.report(
-            Diagnostic::error(
-                Code::NoColumn,
-                format!(
-                    "`{}` has noise, but its stimulus is not a single column",
-                    drive.target.dotted()
-                ),
-            )
-            .label(
-                drive.value.span,
-                "neither a column of a record nor a column times a number",
-            )
-            .help("only a recorded column has noise: remove `~`, or write `file.i ~ 15 [mA]`"),
-        );
+        model.report(refused::noise_without_column(
+            &drive.target,
+            drive.value.span,
+        ));
         return;
     };
     let scale: f64 = factors.into_iter().product();
@@ -267,19 +247,6 @@ pub(crate) fn report_undriven(model: &mut Model<'_, '_>) {
         }
     }
     for (name, span) in undriven {
-        let help = match model.input.experiment {
-            Some(experiment) => {
-                format!("write in `experiment {experiment}`: `stimulus {name} = …;`")
-            }
-            None => format!("run an experiment that drives it: `stimulus {name} = …;`"),
-        };
-        model.report(
-            Diagnostic::error(
-                Code::UndrivenInput,
-                format!("the input `{}` is not driven", short(&name)),
-            )
-            .label(span, "a free input of the model")
-            .help(help),
-        );
+        model.report(refused::not_driven(&name, span, model.input.experiment));
     }
 }

@@ -14,8 +14,9 @@ use crate::connect::Connection;
 use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
 use crate::names::{FileIndex, Names};
+use crate::refusals::effects as refused;
 use crate::wrap::Wrap;
-use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy, Span};
+use hyde_diag::{InstancePath, MadeBy, Span};
 use hyde_ir::{Expr as Ir, Index};
 use hyde_syntax::ast::{
     Change, Class, ClassBody, ClassKind, Declaration, Declarator, EffectUse, Element, Prefix,
@@ -59,11 +60,7 @@ pub(super) fn hook<'a>(
         let found = model.names.class(file, &used.effect);
         let Some((file, class)) = found.filter(|(_, class)| class.kind == ClassKind::Effect) else {
             let diagnostic = match found {
-                Some((_, class)) => Diagnostic::error(
-                    Code::WrongType,
-                    format!("`{}` is not an effect", class.name.text),
-                )
-                .label(used.effect.span, "only effects may follow `with`"),
+                Some((_, class)) => refused::with_no_effect(&class.name.text, used.effect.span),
                 None => model.names.unknown(file, &used.effect),
             };
             model.report(diagnostic);
@@ -148,14 +145,7 @@ fn effect<'a>(
     let path = model.tree.path(host);
     let id = instance_of_effect(model, host, (file, class), name, site.span);
     if model.tree.name(host, name, Member::Instance(id)).is_some() {
-        model.report(
-            Diagnostic::error(
-                Code::Duplicate,
-                format!("`{name}` is on `{}` twice", written(site)),
-            )
-            .label(site.span, "the second time")
-            .help("give the second another name: `effect Other on … extends …`"),
-        );
+        model.report(refused::twice_on_a_site(name, &written(site), site.span));
     }
     let mut modifiers = modifiers_for(model, name, of_host);
     modifiers_of(model, changes, scope, &mut modifiers);
@@ -328,15 +318,11 @@ pub(super) fn replaced<'a>(
         ..
     } = model.making.replacements[number];
     if !declaration.prefixes.contains(&Prefix::Replaceable) {
-        model.report(
-            Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
-                .label(component.span, "cannot be replaced")
-                .label(declarator.name.span, "declared here as not replaceable")
-                .help(format!(
-                    "declare it `replaceable {} {name}`",
-                    declaration.type_name.dotted()
-                )),
-        );
+        model.report(refused::not_replaceable(
+            component.span,
+            &declarator.name,
+            &declaration.type_name.dotted(),
+        ));
         return None;
     }
     let mut own = Vec::new();

@@ -4,6 +4,7 @@ use super::{Draft, READ_IN};
 use crate::instance::Typed;
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;
+use crate::refusals::laws as refused;
 use hyde_ir::{ExprId, Id as _, LawStep};
 use hyde_syntax::ast::{Change, Declarator, Expr};
 
@@ -25,12 +26,7 @@ pub(super) fn constant_of_shape<'a>(
         return Err(None);
     };
     let Some(range) = &declarator.within else {
-        return Err(wrong(
-            format!("the constant `{name}` of a shape has no range"),
-            declarator.name.span,
-            "no range",
-            format!("write the values that records determine: `{name} = … in 0 .. v_max`"),
-        ));
+        return Err(wrong(refused::constant_without_range(&declarator.name)));
     };
     let range = [&range.from, &range.to].map(|bound| like(model, draft, bound, &own));
     let arena = &mut model.flat.exprs;
@@ -69,12 +65,7 @@ pub(super) fn attributes_of_output<'a>(
         let id = like(model, draft, value, &number);
         let count = model.flat.exprs.as_constant(id);
         let Some(count) = count.filter(|count| count.fract() == 0.0 && *count >= 0.0) else {
-            return Err(wrong(
-                format!("`{word}` is not a whole number"),
-                change.target.span,
-                "counts something",
-                format!("write `{word} = 2`"),
-            ));
+            return Err(wrong(refused::not_a_count(word, change.target.span)));
         };
         match word {
             "cost" => draft.shape.cost = count as u32,
@@ -119,10 +110,5 @@ fn attributes<'a>(
 }
 
 fn unknown(change: &Change, known: &[&str]) -> Refusal {
-    wrong(
-        format!("`{}` is not an attribute here", change.target.dotted()),
-        change.target.span,
-        "not known",
-        format!("write one of {}", crate::model::listed(known)),
-    )
+    wrong(refused::unknown_attribute(&change.target, known))
 }

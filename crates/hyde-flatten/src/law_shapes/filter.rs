@@ -1,10 +1,10 @@
 //! The filters of a shape: `tau*der(late) = v - late;`.
 
+use super::Draft;
 use super::text::text_in_shape;
-use super::{Draft, refused};
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::laws as refused;
 use hyde_ir::{ExprId, Id as _, LawInput, LawState, LawText};
 use hyde_syntax::ast::{Binary, Declarator, EquationKind, Expr, ExprKind};
 use hyde_units::Dimension;
@@ -33,21 +33,12 @@ pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> R
     let mut read = vec![false; draft.shape.states.len()];
     for equation in draft.equations.clone() {
         let Some((time_constant, name, input)) = filter(&equation.kind) else {
-            return Err(wrong(
-                "this equation of a shape is not a filter".to_owned(),
-                equation.span,
-                "a shape can only filter one of its values",
-                "write `tau*der(late) = v - late;`".to_owned(),
-            ));
+            return Err(wrong(refused::not_a_filter(equation.span)));
         };
         let states = draft.shape.states.iter();
         let Some(number) = states.clone().position(|state| state.name == name) else {
             let known: Vec<&str> = states.map(|state| state.name.as_str()).collect();
-            let message = format!("there is no `{name}` in this shape that is filtered");
-            let diagnostic = Diagnostic::error(Code::UnknownName, message);
-            let diagnostic = diagnostic.label(equation.span, "not known");
-            let help = format!("known here: {}", crate::model::listed(&known));
-            return Err(refused(diagnostic.help(help)));
+            return Err(wrong(refused::filters_nothing(name, equation.span, &known)));
         };
         let scope = draft.scope();
         let [first, second] = [time_constant, input].map(|value| model.lower(value, &scope));
@@ -72,15 +63,10 @@ pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> R
     let mut states = draft.shape.states.iter().zip(read);
     match states.find(|(_, read)| !read) {
         None => Ok(()),
-        Some((state, _)) => Err(wrong(
-            format!("`{}` of a shape has no value", state.name),
+        Some((state, _)) => Err(wrong(refused::no_value_in_shape(
+            &state.name,
             draft.class.name.span,
-            "declared without one",
-            format!(
-                "write `{0} = …`, or its filter `tau*der({0}) = … - {0};`",
-                state.name
-            ),
-        )),
+        ))),
     }
 }
 

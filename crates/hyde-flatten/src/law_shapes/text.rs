@@ -5,6 +5,7 @@ use super::Draft;
 use crate::law_roles::{Refusal, wrong};
 use crate::law_sites::full_name;
 use crate::model::Model;
+use crate::refusals::laws as refused;
 use hyde_ir::{ExprId, LawInput, LawPiece, LawText};
 use hyde_syntax::ast::{Binary, Expr, ExprKind, Name, Part, Reference};
 
@@ -29,12 +30,7 @@ pub(super) fn text_in_shape<'a>(
         let (number, rest) = part.split_once('_').unwrap_or((part, ""));
         let number = number.parse().unwrap_or(0);
         if let LawInput::Least(_) | LawInput::Greatest(_) = draft.shape.inputs[number] {
-            return Err(wrong(
-                "a shape depends on what records show".to_owned(),
-                expr.span,
-                "a law holds for other records too",
-                "use a constant of the shape, or a round value: `v1`, `x1`, `t1`".to_owned(),
-            ));
+            return Err(wrong(refused::depends_on_records(expr.span)));
         }
         pieces.push(LawPiece::Input(number));
         pieces.extend(letters(rest));
