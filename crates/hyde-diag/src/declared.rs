@@ -6,9 +6,8 @@
 /// use hyde_diag::{Sources, Span, diagnostics};
 ///
 /// diagnostics! {
-///     fn unknown_part(name: &str, at: Span, known: &[&str], near: Option<&str>) = error UnknownName {
-///         "there is no part `{name}`";
-///         at at, "not known";
+///     fn unknown_part(name: &str, here: Span, known: &[&str], near: Option<&str>) = error UnknownName {
+///         "there is no part `{name}`"; at here, "not known";
 ///         match near {
 ///             Some(near) => { help "did you mean `{near}`?"; }
 ///             None => { help "the parts are {}", known.join(", "); }
@@ -16,13 +15,13 @@
 ///     }
 /// }
 ///
-/// let at = Span::new(Sources::new().add("axis.hyde", "mtoor"), 0, 5);
-/// let diagnostic = unknown_part("mtoor", at, &["motor", "screw"], Some("motor"));
+/// let here = Span::new(Sources::new().add("axis.hyde", "mtoor"), 0, 5);
+/// let diagnostic = unknown_part("mtoor", here, &["motor", "screw"], Some("motor"));
 /// assert_eq!(diagnostic.help.as_deref(), Some("did you mean `motor`?"));
 /// ```
 ///
-/// The message and every text are literals of `format!`, with its arguments behind a comma. The parts stand in the order in
-/// which they are shown, each ends with `;`:
+/// The functions are seen in the whole crate. The message and every text are literals of `format!`, with its arguments behind a
+/// comma. The parts, each ended by `;`, stand in the order in which they are shown:
 ///
 /// | Part | Adds |
 /// |---|---|
@@ -73,14 +72,14 @@ macro_rules! diagnostics {
     };
     ($(
         $(#[$meta:meta])*
-        $visible:vis fn $name:ident($($parameter:tt: $type:ty),* $(,)?) = $severity:ident $code:ident {
+        fn $name:ident($($parameter:tt: $type:ty),* $(,)?) = $severity:ident $code:ident {
             $message:literal $(, $value:expr)* $(,)?;
             $($part:tt)*
         }
     )+) => {$(
         $(#[$meta])*
         #[must_use]
-        $visible fn $name($($parameter: $type),*) -> $crate::Diagnostic {
+        pub(crate) fn $name($($parameter: $type),*) -> $crate::Diagnostic {
             let message = format!($message $(, $value)*);
             let mut made = $crate::Diagnostic::$severity($crate::Code::$code, message);
             $crate::diagnostics!(@parts made; $($part)*);

@@ -5,8 +5,9 @@
 use crate::instance::{InstanceId, Member};
 use crate::instantiate::InstanceTree;
 use crate::names::FileIndex;
+use crate::refusals::instantiate as refused;
 use crate::{Form, Input};
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::{Diagnostic, Span};
 use hyde_ir::{FlatModel, VarId, flat::Foreign};
 
 /// Notes the clocked part of a component whose file stands for an FMU.
@@ -65,16 +66,5 @@ pub(crate) fn refuse_observer(flat: &FlatModel, form: Form) -> Option<Diagnostic
 /// Refuses the FMU of a component, by its name, its file and where it is declared, to what would need its equations.
 #[must_use]
 pub fn fmu_has_no_equations((name, file, span): (&str, &str, Span), needs: &str) -> Diagnostic {
-    let name = match name {
-        "" => "the model".to_owned(),
-        name => format!("`{name}`"),
-    };
-    let diagnostic = Diagnostic::error(
-        Code::FmuOnlyRuns,
-        format!("{name} is the FMU `{file}`; {needs} needs equations, and an FMU has none"),
-    );
-    diagnostic
-        .label(span, "this component")
-        .note("an FMU gives values at the ticks of its clock: `hyde run`, `sweep` and `test` run it")
-        .help("replace it by a model written in Hyde, or leave it out and make what it gives an input")
+    refused::fmu_without_equations(name, file, span, needs)
 }

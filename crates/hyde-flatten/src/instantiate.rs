@@ -25,13 +25,14 @@ pub(crate) use quantity::{quantity, type_unit};
 pub(crate) use tree::InstanceTree;
 
 use crate::instance::{Instance, InstanceId};
-use crate::model::{Model, listed};
-use crate::names::{FileIndex, nearest};
+use crate::model::Model;
+use crate::names::FileIndex;
+use crate::refusals::instantiate as refused;
 use clocked::declare_clocked;
 use declare::declare;
 use domain::declare_domain;
 use effect::{effects_of, hook, hook_additions};
-use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, Span};
+use hyde_diag::{InstancePath, Span};
 use hyde_ir::ClockId;
 use hyde_syntax::ast::{Change, Class, ClassBody, Element, Prefix, Reference};
 use modification::{Modifier, modifiers_of, note_modified, report_unused_modifications};
@@ -95,25 +96,17 @@ pub(crate) fn instantiate_root(model: &mut Model<'_, '_>) -> Option<InstanceId> 
     let name = model.input.model;
     let Some(class) = model.names.own_class(name) else {
         let file = model.input.files.first()?.0;
-        let diagnostic = Diagnostic::error(
-            Code::NoExperiment,
-            format!("the file has no model `{name}`"),
-        );
         let models: Vec<&str> = model.names.own_models().collect();
         let written = model
             .input
             .experiment
             .and_then(|experiment| model.names.own_experiment(experiment))
             .filter(|experiment| experiment.model.dotted() == name);
-        let diagnostic = match written {
-            Some(experiment) => diagnostic.label(experiment.model.span, "not in this file"),
-            None => diagnostic.label(Span::new(file, 0, 0), "searched in this file"),
+        let place = match written {
+            Some(experiment) => (experiment.model.span, "not in this file"),
+            None => (Span::new(file, 0, 0), "searched in this file"),
         };
-        model.report(match nearest(name, models.iter().copied()) {
-            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None if models.is_empty() => diagnostic.help("it has none"),
-            None => diagnostic.help(format!("it has {}", listed(&models))),
-        });
+        model.report(refused::no_model(name, place, &models));
         return None;
     };
     model.flat.name = class.name.text.clone();
@@ -178,24 +171,12 @@ fn instantiate<'a>(
     }
     if nested(&model.tree, id) > MAX_NESTED {
         model.making.endless.push(class);
-        model.report(
-            Diagnostic::error(
-                Code::Cycle,
-                format!("`{}` contains itself", class.name.text),
-            )
-            .label(class.name.span, "contains itself")
-            .help("a model cannot be a component of itself"),
-        );
+        model.report(refused::contains_itself(&class.name));
         return id;
     }
     if depth(&model.tree, id) > MAX_PARTS {
         model.making.endless.push(class);
-        too_deep(
-            model.diagnostics,
-            format!("more than {MAX_PARTS} components are nested"),
-            (class.name.span, "instantiated inside that many others"),
-            "put parts beside each other and connect them",
-        );
+        model.report(refused::nested_too_deep(class.name.span, MAX_PARTS));
         return id;
     }
     note_modified(model, id, &modifiers);
@@ -291,19 +272,12 @@ fn collect<'a>(
         .iter()
         .position(|&known| std::ptr::eq(known, class))
     {
-        let name = &class.name.text;
         let names: Vec<String> = walk.chain[own..]
             .iter()
             .chain([&class])
             .map(|class| format!("`{}`", class.name.text))
             .collect();
-        let message = match names.len() {
-            2 => format!("`{name}` extends itself"),
-            _ => format!("`{name}` extends itself: {}", names.join(" extends ")),
-        };
-        model.report(
-            Diagnostic::error(Code::Cycle, message).label(class.name.span, "declared here"),
-        );
+        model.report(refused::extends_itself(&class.name, &names));
         return;
     }
     model.making.extended += 1;
@@ -312,15 +286,9 @@ fn collect<'a>(
         if model.making.extended <= MAX_EXTENDED + 1 {
             model.making.extended = MAX_EXTENDED + 1;
             let name = &model.tree[walk.id].class.name;
-            too_deep(
-                model.diagnostics,
-                format!(
-                    "`{}` extends more than {MAX_BASES} classes in a chain, or more than {MAX_EXTENDED} in all",
-                    name.text
-                ),
-                (name.span, "its chain of `extends` is too long"),
-                "remove classes that add nothing to the class they extend",
-            );
+            let limits = (MAX_BASES, MAX_EXTENDED);
+            let diagnostic = refused::extends_too_much(name, limits);
+            model.report(diagnostic);
         }
         return;
     }
@@ -375,17 +343,6 @@ fn collect_base<'a>(
 /// How many instances are around an instance, itself counted.
 fn depth(tree: &InstanceTree<'_>, id: InstanceId) -> usize {
     tree.around(id).count()
-}
-
-/// Reports a limit that is passed.
-pub(crate) fn too_deep(
-    diagnostics: &mut Diagnostics,
-    message: String,
-    at: (Span, &str),
-    help: &str,
-) {
-    let diagnostic = Diagnostic::error(Code::TooDeep, message).label(at.0, at.1);
-    diagnostics.push(diagnostic.help(help));
 }
 
 /// How often the class of an instance is that of the instances around it, itself counted.

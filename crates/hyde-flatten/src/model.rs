@@ -12,10 +12,11 @@ use crate::Input;
 use crate::dimension::{Dim, Dimensions};
 use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
 use crate::instantiate::{InstanceTree, Making};
-use crate::names::{self, Names};
+use crate::names::Names;
+use crate::refusals::names as refused;
 use crate::turns::{Sides, Turns};
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy, Span};
+use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
 use hyde_ir::{
     ClockId, ColumnId, Expr, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
 };
@@ -230,30 +231,10 @@ impl<'a, 'd> Model<'a, 'd> {
             ("", class) => format!("model `{class}`"),
             (path, class) => format!("`{path}` ({class})"),
         };
-        let diagnostic = Diagnostic::error(
-            Code::UnknownName,
-            format!("there is no `{word}` in {place}"),
-        )
-        .label(
-            whole
-                .parts
-                .iter()
-                .rev()
-                .find(|part| part.name.text == word)
-                .map_or(whole.span, |part| part.name.span),
-            "not known",
-        );
-        let diagnostic = match names::nearest(word, known.iter().copied()) {
-            _ if word == "Modelica" => {
-                let help = hyde_syntax::instead_of(&whole.dotted());
-                diagnostic.help(help.unwrap_or_default())
-            }
-            _ if word == "dt" => diagnostic.help("the derivative of `x` by the time is `der(x)`"),
-            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None if known.is_empty() => diagnostic,
-            None => diagnostic.help(format!("known here: {}", listed(&known))),
-        };
-        self.report(diagnostic);
+        let mut parts = whole.parts.iter().rev();
+        let part = parts.find(|part| part.name.text == word);
+        let here = part.map_or(whole.span, |part| part.name.span);
+        self.report(refused::unknown_name((word, here), &place, whole, &known));
     }
 }
 

@@ -1,7 +1,8 @@
 //! What the names of classes and types mean in each file: its own, its imports, and packages by their full name.
 
 use crate::Input;
-use hyde_diag::{Code, Diagnostic, FileId, Span};
+use crate::refusals::names as refused;
+use hyde_diag::{Diagnostic, FileId, Span};
 pub(crate) use hyde_syntax::FileIndex;
 use hyde_syntax::Lookup;
 use hyde_syntax::ast::{self, Class, ClassBody, Element, Item, Reference, TypeItem};
@@ -181,14 +182,9 @@ impl<'a> Names<'a> {
     pub(crate) fn unknown(self, file: FileIndex, name: &Reference) -> Diagnostic {
         let text = name.dotted();
         if let [first, second, ..] = self.packages_with(file, &text).as_slice() {
-            return Diagnostic::error(
-                Code::UnknownType,
-                format!("`{text}` is in `{first}` and in `{second}`"),
-            )
-            .label(name.span, "which of them?")
-            .help(format!("write `{first}.{text}` or `{second}.{text}`"));
+            return refused::in_two_packages(name, first, second);
         }
-        if let Some(diagnostic) = self.not_imported(file, name, declared_name) {
+        if let Some(diagnostic) = self.not_imported(file, name, None, declared_name) {
             return diagnostic;
         }
         let declare = "declare it, or import its package: `import Rotational.*;`";
@@ -197,7 +193,7 @@ impl<'a> Names<'a> {
 
     /// "no such quantity", where only one can stand: behind `parameter`, before the name of a measure.
     pub(crate) fn unknown_quantity(self, file: FileIndex, name: &Reference) -> Diagnostic {
-        match self.not_imported(file, name, quantity_name) {
+        match self.not_imported(file, name, None, quantity_name) {
             Some(diagnostic) => diagnostic,
             None => {
                 let declare = format!("declare it: `type {} = Real [unit];`", name.dotted());
@@ -226,10 +222,9 @@ impl<'a> Names<'a> {
         self,
         file: FileIndex,
         name: &Reference,
-        (what, declare): (&str, &str),
+        missing: (&str, &str),
         declared: impl Fn(&'a Item) -> Option<&'a str>,
     ) -> Diagnostic {
-        let text = name.dotted();
         let mut known: Vec<&str> = Vec::new();
         for (index, (_, tree)) in self.files.iter().enumerate() {
             if index == file || self.imports_everything(file, index) {
@@ -237,18 +232,7 @@ impl<'a> Names<'a> {
             }
         }
         known.extend(["Real", "Integer", "Boolean"]);
-        let diagnostic = Diagnostic::error(
-            Code::UnknownType,
-            format!("there is no {what} `{text}` here"),
-        )
-        .label(name.span, "not known in this file");
-        if let Some(help) = hyde_syntax::instead_of(&text) {
-            return diagnostic.help(help);
-        }
-        match nearest(&text, known.iter().copied()) {
-            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None => diagnostic.help(declare),
-        }
+        refused::no_type(name, missing, &known)
     }
 
     /// A name that means a quantity here, and is used as the component of that name, which is not imported.
@@ -257,15 +241,10 @@ impl<'a> Names<'a> {
         file: FileIndex,
         name: &Reference,
     ) -> Option<Diagnostic> {
-        let text = name.dotted();
-        let found = self.not_imported(file, name, |item| match item {
+        let also = Some("a quantity, which has no parts");
+        self.not_imported(file, name, also, |item| match item {
             Item::Class(class) => Some(&class.name.text),
             Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
-        });
-        found.map(|diagnostic| {
-            diagnostic.note(format!(
-                "the `{text}` known here is a quantity, which has no parts"
-            ))
         })
     }
 
@@ -275,13 +254,8 @@ impl<'a> Names<'a> {
         file: FileIndex,
         name: &Reference,
     ) -> Option<Diagnostic> {
-        let text = name.dotted();
-        let found = self.not_imported(file, name, quantity_name);
-        found.map(|diagnostic| {
-            diagnostic.note(format!(
-                "the `{text}` known here is a component, which has no value"
-            ))
-        })
+        let also = Some("a component, which has no value");
+        self.not_imported(file, name, also, quantity_name)
     }
 
     /// "it is in a package that is not imported", if that is so.
@@ -289,6 +263,7 @@ impl<'a> Names<'a> {
         self,
         file: FileIndex,
         name: &Reference,
+        also: Option<&str>,
         declared: impl Fn(&Item) -> Option<&str>,
     ) -> Option<Diagnostic> {
         let text = name.dotted();
@@ -310,27 +285,7 @@ impl<'a> Names<'a> {
         if packages.is_empty() {
             return None;
         }
-        let imports: Vec<String> = packages
-            .iter()
-            .map(|package| format!("`import {package}.*;`"))
-            .collect();
-        let quoted: Vec<String> = packages.iter().map(|name| format!("`{name}`")).collect();
-        let which = match quoted.as_slice() {
-            [_] => "which is not imported",
-            _ => "and none of them is imported",
-        };
-        let diagnostic = Diagnostic::error(
-            Code::UnknownType,
-            format!("`{text}` is in {}, {which}", quoted.join(", ")),
-        );
-        Some(
-            diagnostic
-                .label(name.span, "not known in this file")
-                .help(format!(
-                    "write {} at the top of the file",
-                    imports.join(" or ")
-                )),
-        )
+        Some(refused::not_imported(name, &packages, also))
     }
 
     /// The packages imported whole that have a model of that name.

@@ -5,7 +5,7 @@ use super::{Collected, members};
 use crate::foreign;
 use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::instantiate as refused;
 use hyde_ir::flat;
 use hyde_syntax::ast;
 
@@ -17,10 +17,7 @@ pub(super) fn declare_clocked<'a>(
 ) {
     let name = clocked.name.text.as_str();
     if model.clock_of(id).is_some() {
-        model.report(
-            Diagnostic::error(Code::ClockBorder, "a clocked part inside a clocked part")
-                .label(clocked.name.span, "move it out of the other"),
-        );
+        model.report(refused::clocked_in_clocked(clocked.name.span));
         return;
     }
     let origin = model.tree.origin(id, clocked.name.span);

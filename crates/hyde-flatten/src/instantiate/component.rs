@@ -7,7 +7,8 @@ use super::{Collected, Place, instantiate};
 use crate::instance::{InstanceId, Member, Position};
 use crate::model::Model;
 use crate::names::{FileIndex, Names};
-use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath};
+use crate::refusals::instantiate as refused;
+use hyde_diag::{Diagnostics, InstancePath};
 use hyde_syntax::ast::{Class, ClassKind, Declaration, Declarator, Prefix};
 
 pub(super) fn declare_component<'a>(
@@ -20,31 +21,17 @@ pub(super) fn declare_component<'a>(
     class: &'a Class,
 ) {
     if class.kind == ClassKind::Effect {
-        model.report(
-            Diagnostic::error(
-                Code::WrongType,
-                format!("`{}` is an effect, not a component", class.name.text),
-            )
-            .label(declaration.type_name.span, "an effect is added at a site")
-            .help(format!(
-                "write `model New = Old with {} on site;`",
-                class.name.text
-            )),
-        );
+        model.report(refused::effect_as_component(
+            &class.name.text,
+            declaration.type_name.span,
+        ));
         return;
     }
     if let Some(binding) = &declarator.binding {
-        model.report(
-            Diagnostic::error(
-                Code::WrongType,
-                format!(
-                    "the component `{}` cannot equal an expression",
-                    declarator.name.text
-                ),
-            )
-            .label(binding.span, "a value for a component")
-            .help("modify its parameters: `Mass m(M = 3 [kg]);`"),
-        );
+        model.report(refused::component_with_value(
+            &declarator.name.text,
+            binding.span,
+        ));
     }
     let count = length(model, id, &declaration.dims, &declarator.dims);
     let name = declarator.name.text.as_str();
@@ -113,16 +100,9 @@ fn redeclared<'a>(
         return Some(declared);
     };
     if !declaration.prefixes.contains(&Prefix::Replaceable) {
-        let name = &declarator.name.text;
-        diagnostics.push(
-            Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
-                .label(modifier.change.target.span, "cannot be redeclared")
-                .label(declarator.name.span, "declared here as not replaceable")
-                .help(format!(
-                    "declare it `replaceable {} {name}`",
-                    declared.1.name.text
-                )),
-        );
+        let here = modifier.change.target.span;
+        let class = &declared.1.name.text;
+        diagnostics.push(refused::cannot_redeclare(here, &declarator.name, class));
         return None;
     }
     let file = names.file_of(new.span)?;

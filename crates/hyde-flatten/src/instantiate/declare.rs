@@ -5,7 +5,7 @@ use super::component::declare_component;
 use super::variable::declare_variable;
 use crate::instance::{InstanceId, Member};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::instantiate as refused;
 use hyde_syntax::ast::{
     self, Declaration, Declarator, Element, EquationKind, Expr, ExprKind, Prefix, Reference,
 };
@@ -90,13 +90,7 @@ pub(super) fn free_name<'a>(
         Member::Instances(parts) => parts.first().map(|part| model.tree[*part].span),
         Member::Domain(domain) => Some(model.domains[*domain].span),
     };
-    let diagnostic = Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
-        .label(declarator.name.span, "declared again here");
-    let diagnostic = match first {
-        Some(first) => diagnostic.label(first, "declared first here"),
-        None => diagnostic,
-    };
-    model.report(diagnostic.help("rename one of the two, or remove it"));
+    model.report(refused::declared_twice(&declarator.name, first));
     false
 }
 
@@ -115,22 +109,13 @@ pub(super) fn length<'a>(
                 return Some(0); // Reported; no element is looked for in it.
             };
             if !(0..=100_000_000).contains(&length) {
-                model.report(
-                    Diagnostic::error(
-                        Code::BadShape,
-                        format!("an array cannot have {length} elements"),
-                    )
-                    .label(dim.span, "the number of elements"),
-                );
+                model.report(refused::bad_length(length, dim.span));
                 return Some(0);
             }
             usize::try_from(length).ok()
         }
         [_, second, ..] => {
-            model.report(
-                Diagnostic::error(Code::NotYet, "arrays have one dimension in this version")
-                    .label(second.span, "a second dimension"),
-            );
+            model.report(refused::second_dimension(second.span));
             None
         }
     }

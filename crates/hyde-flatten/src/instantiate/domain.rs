@@ -3,7 +3,8 @@
 use crate::dimension::Dim;
 use crate::instance::{Domain, DomainId, Field, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::instantiate as refused;
+use hyde_diag::Span;
 use hyde_syntax::ast::{self, Declarator};
 use hyde_units::Dimension;
 
@@ -20,29 +21,15 @@ pub(super) fn declare_domain<'a>(
     let name = domain.name.text.as_str();
     let span = domain.name.span;
     let Some(method) = method else {
-        model.report(
-            Diagnostic::error(
-                Code::FieldUse,
-                format!("the domain `{name}` is not discretised"),
-            )
-            .label(span, "how many cells?")
-            .help(format!("write `discretize {name} by fem(n = 24);`")),
-        );
+        model.report(refused::not_discretised(&domain.name));
         model.undeclared.insert(name);
         return;
     };
     let averaged = match method.method.text.as_str() {
         "fem" => true,
         "fv" => false,
-        other => {
-            model.report(
-                Diagnostic::error(
-                    Code::NotYet,
-                    format!("this version has no discretisation `{other}`"),
-                )
-                .label(method.method.span, "not known")
-                .help("write `fem(n = …)` or `fv(n = …)`, or `f_max = …` for `n = …`"),
-            );
+        _ => {
+            model.report(refused::unknown_discretisation(&method.method));
             model.undeclared.insert(name);
             return;
         }
@@ -57,20 +44,11 @@ pub(super) fn declare_domain<'a>(
         .ok()
         .filter(|&n| (2..=MAX_CELLS).contains(&n))
     else {
-        model.report(
-            Diagnostic::error(
-                Code::BadArguments,
-                format!("`{name}` cannot have {count} cells"),
-            )
-            .label(
-                span_of_count,
-                if count < 2 {
-                    "at least 2".to_owned()
-                } else {
-                    format!("at most {MAX_CELLS}")
-                },
-            ),
-        );
+        model.report(refused::bad_number_of_cells(
+            name,
+            (count, span_of_count),
+            MAX_CELLS,
+        ));
         model.undeclared.insert(name);
         return;
     };
@@ -110,11 +88,7 @@ fn number_of_cells<'a>(
             Some("f_max") => f_max = Some(&argument.value),
             Some(_) | None => {
                 let span = name.map_or(argument.value.span, |name| name.span);
-                model.report(
-                    Diagnostic::error(Code::BadArguments, "a mesh has no such option")
-                        .label(span, "not known")
-                        .help("options are `n`, the number of cells, and `f_max`, the highest frequency of waves"),
-                );
+                model.report(refused::unknown_option_of_mesh(span));
                 return None;
             }
         }
@@ -157,14 +131,7 @@ pub(crate) fn domain_named<'a>(
         return Some(*domain);
     }
     if model.undeclared.insert(&name.text) {
-        model.report(
-            Diagnostic::error(
-                Code::UnknownName,
-                format!("there is no domain `{}` here", name.text),
-            )
-            .label(name.span, "not known")
-            .help("declare it: `domain bar(x in 0 .. len);`"),
-        );
+        model.report(refused::no_domain(name));
     }
     None
 }
@@ -177,14 +144,7 @@ pub(super) fn field<'a>(
 ) -> Option<Field> {
     let name = &declarator.name;
     let Some(domain) = &declarator.domain else {
-        model.report(
-            Diagnostic::error(
-                Code::FieldUse,
-                format!("on which domain is the field `{}`?", name.text),
-            )
-            .label(name.span, "a field needs a domain")
-            .help(format!("write `field … {} on bar;`", name.text)),
-        );
+        model.report(refused::field_without_domain(name));
         return None;
     };
     let domain = domain_named(model, id, domain)?;

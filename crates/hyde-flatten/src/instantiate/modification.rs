@@ -1,9 +1,9 @@
 //! Modifications: each as a single change with the scope its value stands in, and what of them nothing used.
 
 use crate::instance::{Binding, InstanceId, Position};
-use crate::model::{Model, listed};
-use crate::names::nearest;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::model::Model;
+use crate::refusals::instantiate as refused;
+use hyde_diag::Span;
 use hyde_syntax::ast::{Change, Declarator, ExprKind};
 
 /// A modification of something below an instance, with the scope its value stands in.
@@ -116,33 +116,21 @@ pub(super) fn report_unused_modifications(model: &mut Model<'_, '_>) {
         .map(|(number, (span, name, _))| (number, *span, name.clone()))
         .collect();
     for (number, span, name) in unused {
-        let last = name.rsplit('.').next().unwrap_or(&name);
         if name.split('.').any(|word| model.undeclared.contains(word)) {
             continue;
         }
-        let diagnostic = Diagnostic::error(
-            Code::UnknownModification,
-            format!("there is no `{name}` to modify"),
-        );
         let Some(instance) = model
             .making
             .modified
             .get(&number)
             .map(|&id| &model.tree[id])
         else {
-            model.report(diagnostic.label(span, "changes nothing"));
+            model.report(refused::nothing_to_modify(&name, span));
             continue;
         };
         let known: Vec<&str> = instance.members.keys().copied().collect();
-        let diagnostic = diagnostic.label(
-            span,
-            format!("`{}` has no such element", instance.class.name.text),
-        );
-        let near = nearest(last, known.iter().copied()).filter(|near| *near != last);
-        model.report(match near {
-            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None => diagnostic.help(format!("it has {}", listed(&known))),
-        });
+        let class = &instance.class.name.text;
+        model.report(refused::no_element_to_modify(&name, span, class, &known));
     }
 }
 
@@ -247,20 +235,12 @@ pub(super) fn check_attributes<'a>(
             } else {
                 "parameter"
             };
-            let diagnostic = Diagnostic::error(
-                Code::UnknownModification,
-                format!("a {of} has no attribute `{}`", change.target.dotted()),
-            )
-            .label(change.target.span, "changes nothing");
             let text = match change.value.as_ref().map(|value| &value.kind) {
                 Some(ExprKind::String(text)) => text.as_str(),
                 Some(_) | None => "unit",
             };
             let instead = word.and_then(|word| hyde_syntax::instead_of_attribute(word, text));
-            model.report(match instead {
-                Some(help) => diagnostic.help(help),
-                None => diagnostic.help(format!("attributes are {}", listed(known))),
-            });
+            model.report(refused::no_attribute(&change.target, of, known, instead));
         }
     }
 }

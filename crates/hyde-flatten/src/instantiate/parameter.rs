@@ -8,7 +8,7 @@ use super::variable::is_true;
 use crate::instance::{InstanceId, Lowering, Member, ParameterNotes};
 use crate::model::Model;
 use crate::names::TypeName;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::instantiate as refused;
 use hyde_ir::{Parameter, Role};
 use hyde_syntax::ast::{self, Declaration, Prefix};
 use hyde_units::{Allowed, NamedUnit};
@@ -28,9 +28,7 @@ pub(super) fn declare_parameters<'a>(
         let class = model.names.class(item.file, &declaration.type_name);
         let diagnostic = match class.map(|_| elsewhere()) {
             Some(Some(diagnostic)) => diagnostic,
-            Some(None) => Diagnostic::error(Code::WrongType, "a model cannot be a parameter")
-                .label(declaration.type_name.span, "this is a model")
-                .help("declare it without `parameter`; exchange it by `replaceable`"),
+            Some(None) => refused::model_as_parameter(declaration.type_name.span),
             None => model
                 .names
                 .unknown_quantity(item.file, &declaration.type_name),
@@ -57,14 +55,10 @@ pub(super) fn declare_parameters<'a>(
         let modifiers = modifiers_for(model, name, &item.modifiers);
         let outermost = modifiers.iter().find(|modifier| modifier.target.is_empty());
         if let (true, Some(modifier)) = (has(Prefix::Final) || has(Prefix::Constant), outermost) {
-            model.report(
-                Diagnostic::error(Code::FinalModified, format!("`{name}` is final"))
-                    .label(modifier.change.target.span, "cannot be modified")
-                    .label(declarator.name.span, "declared final here")
-                    .help(format!(
-                        "remove `{name}`: modify the parameters from which its value is computed"
-                    )),
-            );
+            model.report(refused::modifies_final(
+                modifier.change.target.span,
+                &declarator.name,
+            ));
         }
         let declared = declarator
             .prior

@@ -3,7 +3,7 @@
 use crate::dimension::Dim;
 use crate::model::Model;
 use crate::names::{FileIndex, TypeName};
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::instantiate as refused;
 use hyde_ir::Quantity;
 use hyde_syntax::ast::{self, Expr, ExprKind};
 use hyde_units::NamedUnit;
@@ -88,14 +88,9 @@ pub(crate) fn type_unit<'a>(
             Some(TypeName::Quantity(_, base))
                 if seen.iter().any(|known| std::ptr::eq(*known, base)) =>
             {
-                let name = &base.name.text;
-                let message = format!("the type `{name}` is defined by itself");
-                let mut diagnostic = Diagnostic::error(Code::Cycle, message);
-                for item in seen {
-                    let next = item.base.dotted();
-                    diagnostic = diagnostic.label(item.name.span, format!("is a `{next}`"));
-                }
-                model.report(diagnostic.help(format!("write `type {name} = Real [unit];`")));
+                let own = |item: &&ast::TypeItem| (item.name.span, item.base.dotted());
+                let circle: Vec<_> = seen.iter().map(own).collect();
+                model.report(refused::type_of_itself(&base.name.text, &circle));
                 return None;
             }
             Some(TypeName::Quantity(next, base)) => (file, item) = (next, base),

@@ -8,7 +8,8 @@ use super::quantity::quantity;
 use crate::instance::{Binding, InstanceId, Member, Setting, VariableNotes};
 use crate::model::Model;
 use crate::names::TypeName;
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use crate::refusals::instantiate as refused;
+use hyde_diag::Diagnostics;
 use hyde_ir::{StateChoice, Variable, VariableKind};
 use hyde_syntax::ast::{ClassKind, Declaration, Declarator, Expr, ExprKind, Prefix};
 use hyde_units::Kind;
@@ -75,16 +76,7 @@ pub(super) fn declare_variable<'a>(
     let origin = model.tree.origin(id, declarator.name.span);
     let flow = has(Prefix::Flow);
     if flow && model.tree[id].class.kind != ClassKind::Connector {
-        model.report(
-            Diagnostic::error(
-                Code::BadConnection,
-                format!("`flow` on `{name}`, which is not in a connector"),
-            )
-            .label(
-                declaration.span,
-                "only variables of a connector can be `flow`",
-            ),
-        );
+        model.report(refused::flow_outside_connector(name, declaration.span));
     }
     model.variables.push(VariableNotes {
         instance: id,
@@ -146,11 +138,7 @@ fn state_choice(diagnostics: &mut Diagnostics, expr: &Expr) -> StateChoice {
         None
     };
     word.and_then(StateChoice::of).unwrap_or_else(|| {
-        diagnostics.push(
-            Diagnostic::error(Code::UnknownModification, "no such choice of states")
-                .label(expr.span, "not known")
-                .help("write `state = always`, `prefer`, `avoid`, `never`, or leave it open"),
-        );
+        diagnostics.push(refused::unknown_choice_of_states(expr.span));
         StateChoice::Open
     })
 }

@@ -14,7 +14,8 @@ use crate::instance::{
     Binding, InstanceId, Lowering, Member, ParameterNotes, Scope, Setting, Typed,
 };
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use crate::refusals::values as refused;
+use hyde_diag::{Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
 use hyde_ir::{
     Expr as Ir, ExprId, Id as _, Index, ParamId, Parameter, Range, Role, VarId, VariableKind,
@@ -49,10 +50,7 @@ impl<'a> Model<'a, '_> {
         match state {
             Lowering::Done => return,
             Lowering::InProgress => {
-                self.report(
-                    Diagnostic::error(Code::Cycle, format!("the value of `{name}` uses `{name}`"))
-                        .label(span, "in a circle"),
-                );
+                self.report(refused::uses_itself(&name, span));
                 self.parameters[param.index()].state = Lowering::Done;
                 return;
             }
@@ -131,31 +129,26 @@ impl<'a> Model<'a, '_> {
     }
 
     fn no_value(&self, name: &str, param: ParamId) -> Diagnostic {
-        let (parameter, word) = (&self.flat.parameters[param], short(name));
+        let parameter = &self.flat.parameters[param];
         let unit = match &self.parameters[param.index()].dim.as_known() {
             Some(dimension) if !dimension.is_dimensionless() => {
                 format!(" [{}]", parameter.quantity.unit.text())
             }
             _ => String::new(),
         };
-        let diagnostic = Diagnostic::error(
-            Code::NoValue,
-            format!("the parameter `{name}` has no value"),
+        let (instance, declared) = (
+            &self.tree[self.parameters[param.index()].of],
+            &parameter.origin,
         );
-        let instance = &self.tree[self.parameters[param.index()].of];
-        match instance.parent {
-            Some(_) => diagnostic
-                .label(instance.span, format!("gives no `{word}`"))
-                .label(parameter.origin.span, "declared without a value")
-                .help(format!(
-                    "write `{} {}({word} = …{unit});`",
-                    instance.class.name.text,
-                    short(parameter.origin.instance.as_str()),
-                )),
-            None => diagnostic
-                .label(parameter.origin.span, "declared without a value")
-                .help(format!("give it one: `{word} = …{unit}`")),
+        if instance.parent.is_none() {
+            return refused::no_value_at_top(name, declared.span, &unit);
         }
+        let part = (
+            instance.span,
+            instance.class.name.text.as_str(),
+            short(declared.instance.as_str()),
+        );
+        refused::no_value_given(name, declared.span, &unit, part)
     }
 
     /// The values of a binding of parameters: one an element, or one for all elements.
@@ -172,18 +165,7 @@ impl<'a> Model<'a, '_> {
         };
         for item in &items {
             if item.truth != truth && item.dim != Dim::Any {
-                let expected = if truth { "a Boolean" } else { "a number" };
-                self.report(
-                    Diagnostic::error(Code::WrongType, format!("{expected} is expected here"))
-                        .label(
-                            item.span,
-                            if item.truth {
-                                "true or false"
-                            } else {
-                                "a number"
-                            },
-                        ),
-                );
+                self.report(refused::wrong_kind(truth, (item.span, item.truth)));
             } else if !truth {
                 let declared = Typed {
                     span: binding.span,
@@ -234,23 +216,14 @@ impl<'a> Model<'a, '_> {
                     }
                     Some("delay") => self.flat.clocks[clock].delay = value.id,
                     Some("phase") => self.flat.clocks[clock].phase = value.id,
-                    Some(other) => self.report(
-                        Diagnostic::error(Code::BadArguments, format!("a clock has no `{other}`"))
-                            .label(argument.value.span, "unknown")
-                            .help("write `clocked name(1 [ms], delay = 0.2 [ms], phase = 0 [s])`, or `clocked name(event = angle > next)`"),
-                    ),
+                    Some(other) => {
+                        self.report(refused::unknown_part_of_clock(other, argument.value.span))
+                    }
                 }
             }
             match period {
                 Some(period) => self.flat.clocks[clock].period = period,
-                None => self.report(
-                    Diagnostic::error(
-                        Code::BadArguments,
-                        format!("`{}` has no period", clocked.name.text),
-                    )
-                    .label(clocked.name.span, "how often?")
-                    .help(format!("write `clocked {}(1 [ms])`", clocked.name.text)),
-                ),
+                None => self.report(refused::no_period(&clocked.name)),
             }
         }
     }
@@ -261,14 +234,7 @@ impl<'a> Model<'a, '_> {
             && value <= 0.0
         {
             let shown = hyde_units::engineering(value, Dimension::TIME);
-            self.report(
-                Diagnostic::error(
-                    Code::NotAllowed,
-                    format!("a clock cannot tick every {shown}"),
-                )
-                .label(period.span, "the period must be above 0 s")
-                .help("write the time from tick to tick: `clocked name(1 [ms])`"),
-            );
+            self.report(refused::bad_period(&shown, period.span));
         }
     }
 

@@ -18,9 +18,9 @@ pub(crate) use function::Calls;
 use crate::dimension::Dim;
 use crate::instance::{Member, Scope, Setting, Typed};
 use crate::model::Model;
-use crate::names::nearest;
+use crate::refusals::calls as refused;
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::{BinaryOp, UnaryOp};
 use hyde_syntax::ast::{Argument, Expr, Reference};
 use hyde_units::{Dimension, Exponent};
@@ -168,14 +168,7 @@ impl<'a> Model<'a, '_> {
             return self.function(found, arguments, scope, span);
         }
         if let Some(argument) = arguments.iter().find(|argument| argument.name.is_some()) {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    format!("`{name}` takes no named arguments"),
-                )
-                .label(argument.value.span, "named")
-                .help("give the arguments in their order, without names"),
-            );
+            self.report(refused::named_argument(name, argument.value.span));
             return self.poison(span);
         }
         let args: Vec<&'a Expr> = arguments.iter().map(|argument| &argument.value).collect();
@@ -278,30 +271,13 @@ impl<'a> Model<'a, '_> {
             "pder" => self.pder(&args, scope, span),
             "partial" => self.partial(&args, scope, span),
             "integral" => {
-                self.report(
-                    Diagnostic::error(
-                        Code::FieldUse,
-                        "an integral over a domain is allowed only as a separate term of an energy account",
-                    )
-                    .label(span, "not a term of an energy account")
-                    .help("write `stored Energy kinetic = integral(rho*A*v^2/2, bar);`; over time: `measure Energy loss = integral(P);`"),
-                );
+                self.report(crate::refusals::fields::integral_outside_account(span));
                 self.poison(span)
             }
             _ => {
-                let diagnostic = Diagnostic::error(
-                    Code::UnknownFunction,
-                    format!("there is no function `{name}`"),
-                )
-                .label(function.span, "not known");
-                let near = nearest(name, FUNCTIONS.iter().copied());
-                let near = near.map(|near| format!("did you mean `{near}`?"));
                 let other = hyde_syntax::instead_of_function(name).map(str::to_owned);
-                let help = self.instead_of_call(name, scope).or(other).or(near);
-                self.report(match help {
-                    Some(help) => diagnostic.help(help),
-                    None => diagnostic.help("import its package, or declare it: `function twice input Real x; output Real y = 2*x; end twice;`"),
-                });
+                let instead = self.instead_of_call(name, scope).or(other);
+                self.report(refused::unknown_function(function, instead, &FUNCTIONS));
                 self.poison(span)
             }
         }
@@ -344,14 +320,7 @@ impl<'a> Model<'a, '_> {
         let help = hyde_syntax::instead_of(&function.dotted()).or(alone);
         let help =
             help.unwrap_or_else(|| "a field is read at a place with `field.at(x)`".to_owned());
-        self.report(
-            Diagnostic::error(
-                Code::UnknownFunction,
-                format!("there is no function `{}`", function.dotted()),
-            )
-            .label(function.span, "not known")
-            .help(help),
-        );
+        self.report(refused::unknown_method(function, &help));
         self.poison(span)
     }
 
@@ -408,16 +377,13 @@ impl<'a> Model<'a, '_> {
     ) -> Option<[&'a Expr; N]> {
         let found = <[&'a Expr; N]>::try_from(args).ok();
         if found.is_none() {
-            let plural = if N == 1 { "" } else { "s" };
-            let diagnostic = Diagnostic::error(
-                Code::BadArguments,
-                format!("`{name}` takes {N} argument{plural}, not {}", args.len()),
-            )
-            .label(span, "called here");
-            self.report(match usage(name) {
-                Some(usage) => diagnostic.help(format!("write `{usage}`")),
-                None => diagnostic,
-            });
+            let numbers = (N, args.len());
+            self.report(refused::number_of_arguments(
+                name,
+                numbers,
+                span,
+                usage(name),
+            ));
         }
         found
     }

@@ -13,9 +13,10 @@ use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};
 use crate::meaning;
 use crate::model::Model;
+use crate::refusals::values as refused;
 use crate::turns::Turns;
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_syntax::ast::{Expr, ExprKind, UnitText};
 use hyde_units::{AngleExponent, NamedUnit, UnitError};
 
@@ -39,10 +40,7 @@ impl<'a> Model<'a, '_> {
                 }
             }
             ExprKind::String(_) => {
-                self.report(
-                    Diagnostic::error(Code::WrongType, "a text is not a value")
-                        .label(span, "a text"),
-                );
+                self.report(refused::text_as_value(span));
                 self.poison(span)
             }
             ExprKind::Reference(reference) => self.reference(reference, scope),
@@ -80,14 +78,10 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn truth(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> hyde_ir::ExprId {
         let typed = self.lower(expr, scope);
         if !typed.truth && typed.dim != Dim::Any {
-            self.report(
-                Diagnostic::error(Code::WrongType, "expected Boolean, found number")
-                    .label(expr.span, "a number")
-                    .help(format!(
-                        "compare it: `{} > 0`",
-                        hyde_syntax::format_expression(expr)
-                    )),
-            );
+            self.report(refused::number_for_truth(
+                expr.span,
+                &hyde_syntax::format_expression(expr),
+            ));
         }
         typed.id
     }
@@ -96,11 +90,7 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn value(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Typed {
         let typed = self.lower(expr, scope);
         if typed.truth {
-            self.report(
-                Diagnostic::error(Code::WrongType, "expected number, found Boolean")
-                    .label(expr.span, "true or false")
-                    .help("write `if … then 1 else 0`"),
-            );
+            self.report(refused::truth_for_number(expr.span));
         }
         typed
     }
@@ -114,11 +104,7 @@ impl<'a> Model<'a, '_> {
             start,
             end.min(unit.span.end as usize).max(start),
         );
-        let diagnostic = Diagnostic::error(Code::BadUnit, error.fact()).label(span, "in this unit");
-        self.report(match error.help() {
-            Some(help) => diagnostic.help(help),
-            None => diagnostic,
-        });
+        self.report(refused::bad_unit(&error.fact(), span, error.help()));
     }
 
     pub(crate) fn number(&mut self, value: f64, unit: Option<&UnitText>, span: Span) -> Typed {
@@ -152,19 +138,12 @@ impl<'a> Model<'a, '_> {
 
     pub(crate) fn same_kind(&mut self, a: &Typed, b: &Typed) {
         if a.truth != b.truth && a.dim != Dim::Any && b.dim != Dim::Any {
-            self.report(
-                Diagnostic::error(Code::WrongType, "a Boolean and a number are combined")
-                    .label(a.span, if a.truth { "true or false" } else { "a number" })
-                    .label(b.span, if b.truth { "true or false" } else { "a number" }),
-            );
+            self.report(refused::kinds_differ((a.span, a.truth), (b.span, b.truth)));
         }
     }
 
     pub(crate) fn not_constant(&mut self, what: &str, span: Span) {
-        self.report(
-            Diagnostic::error(Code::NotConstant, format!("{what} changes during the run"))
-                .label(span, "only numbers and parameters are allowed here"),
-        );
+        self.report(refused::not_constant(what, span));
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::instance::{InstanceId, Lowering, Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::values as refused;
 use hyde_ir::{Expr as Ir, ExprId, Id as _, ParamId};
 use hyde_syntax::ast::Expr;
 
@@ -27,11 +27,7 @@ impl<'a> Model<'a, '_> {
     ) -> Option<i64> {
         let value = self.structural_number(scope, expr)?;
         if value.fract() != 0.0 || value.abs() > 1e15 {
-            self.report(
-                Diagnostic::error(Code::NotConstant, format!("{value} is not an integer"))
-                    .label(expr.span, "counts something")
-                    .help("write an integer, or an `Integer` parameter"),
-            );
+            self.report(refused::not_an_integer(value, expr.span));
             return None;
         }
         Some(value as i64)
@@ -52,10 +48,7 @@ impl<'a> Model<'a, '_> {
         let errors = self.diagnostics.error_count();
         let value = self.evaluate(typed.id);
         if value.is_none() && self.diagnostics.error_count() == errors {
-            self.report(
-                Diagnostic::error(Code::NotConstant, "the expression is not constant")
-                    .label(typed.span, "only numbers and parameters are allowed here"),
-            );
+            self.report(refused::expression_not_constant(typed.span));
         }
         value
     }
@@ -113,13 +106,8 @@ impl<'a> Model<'a, '_> {
         let parameter = &mut self.flat.parameters[param];
         if structural && parameter.found {
             let (name, span) = (parameter.name.clone(), parameter.origin.span);
-            let message =
-                format!("`{name}` is not constant: it is computed at the start of the run");
-            self.report(
-                Diagnostic::error(Code::NotConstant, message)
-                    .label(span, "`fixed = false`: an initial equation determines it")
-                    .help("give it a value and remove `fixed = false`: a size, a branch or a mesh depends on it"),
-            );
+
+            self.report(refused::found_at_start(&name, span));
             return None;
         }
         parameter.structural |= structural;

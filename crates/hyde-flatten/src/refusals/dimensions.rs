@@ -6,18 +6,15 @@ use hyde_units::{Dimension, Exponent};
 
 diagnostics! {
     /// `message` says both dimensions.
-    pub(crate) fn angle_differs(
+    fn angle_differs(
         message: &str, (left, a): (Span, Dimension), (right, b): (Span, Dimension), repair: &str,
     ) = warning AngleMismatch {
-        "{message}";
-        at left, "this is {}", short(a);
-        at right, "this is {}", short(b);
+        "{message}"; at left, "this is {}", short(a); at right, "this is {}", short(b);
         note "the two differ only in the power of the angle: Hz counts turns, rad/s radians";
         help "{repair}";
     }
-
     /// `message` says both dimensions; the sides are one place if one of them is not written.
-    pub(crate) fn dimensions_differ(
+    fn dimensions_differ(
         message: &str, (left, a): (Span, Dimension), (right, b): (Span, Dimension),
         instance: &InstancePath, repair: Option<String>,
     ) = error UnitMismatch {
@@ -35,8 +32,7 @@ diagnostics! {
         }
         if let Some(repair) = repair { help "{repair}"; }
     }
-
-    pub(crate) fn no_root(exponent: Exponent, (left, right): (Span, Span)) = error UnitMismatch {
+    fn no_root(exponent: Exponent, (left, right): (Span, Span)) = error UnitMismatch {
         "no dimension to the power {exponent} makes the two sides equal";
         match (left == right) {
             true => {}
@@ -45,39 +41,33 @@ diagnostics! {
         at right, "has a variable without a unit, to this power";
         help "declare the variable with a type or a unit, and divide it by a reference value of that unit before it is raised: `(x/(1 [m]))^1.3`";
     }
-
-    pub(crate) fn turn_applied_twice(advance: Span, angle: Span) = warning AngleMismatch {
+    fn turn_applied_twice(advance: Span, angle: Span) = warning AngleMismatch {
         "the factor 2*pi for one turn is applied twice";
         at advance, "2*pi times a quantity per radian: the advance of a turn";
         at angle, "times an angle in radians";
         note "units such as mm/rev are converted to m/rad when they are read";
         help "remove the `2*pi`";
     }
-
-    pub(crate) fn lost_turn(product: Span, factor: &str) = warning AngleMismatch {
+    fn lost_turn(product: Span, factor: &str) = warning AngleMismatch {
         "a quantity per radian times turns per second: a factor 2*pi is missing";
         at product, "per radian, times a frequency";
         note "Hz and 1/min count turns; units such as mm/rev are converted to m/rad when they are read";
         help "write `2*pi*{factor}`, or give the frequency the unit of an angular velocity: `rpm`, `rev/s`";
     }
-
-    pub(crate) fn sine_of_turns(function: &str, argument: Span, factor: &str) = warning AngleMismatch {
+    fn sine_of_turns(function: &str, argument: Span, factor: &str) = warning AngleMismatch {
         "`{function}` of a number of turns: a factor 2*pi is missing";
         at argument, "a frequency times a time counts turns";
         help "write `{function}(2*pi*{factor})`";
     }
-
-    pub(crate) fn turn_divided_twice((left, a): (Span, Option<Dimension>), turn: Span) = warning AngleMismatch {
+    fn turn_divided_twice((left, a): (Span, Option<Dimension>), turn: Span) = warning AngleMismatch {
         "a quantity that is per radian already, over 2*pi";
         at left, "this is {}", a.map_or_else(String::new, short);
         at turn, "divides by the turn again";
         note "units such as mm/rev are converted to m/rad when they are read";
         help "remove the `2*pi`";
     }
-
-    pub(crate) fn zero_point_added(literal: Span, number: &str, unit: &str) = warning ZeroPoint {
-        "a temperature with its zero point is added as a difference";
-        at literal, "adds its zero point as well";
+    fn zero_point_added(literal: Span, number: &str, unit: &str) = warning ZeroPoint {
+        "a temperature with its zero point is added as a difference"; at literal, "adds its zero point as well";
         help "write `{number} [{unit}]` for a difference";
     }
 }

@@ -5,121 +5,82 @@ use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Name, Reference};
 
 diagnostics! {
-    pub(crate) fn reinit_outside_event(state: Span) = error Misplaced {
-        "`reinit` outside an event";
-        at state, "when?";
+    fn reinit_outside_event(state: Span) = error Misplaced {
+        "`reinit` outside an event"; at state, "when?";
         help "write it in `when … then`, or after an exit of a mode";
     }
-
-    pub(crate) fn branches_differ(branches: Span, counts: &[String]) = error ModeEquations {
-        "the branches have different numbers of equations";
-        at branches, "{} equations", counts.join(", ");
+    fn branches_differ(branches: Span, counts: &[String]) = error ModeEquations {
+        "the branches have different numbers of equations"; at branches, "{} equations", counts.join(", ");
         help "every branch, `else` too, determines the same variables";
     }
-
-    pub(crate) fn long_loop(at: Span, turns: usize, most: usize) = error ArrayEquation {
-        "a loop over components of {turns} turns";
-        at at, "unrolled at most {most} times";
+    fn long_loop(here: Span, turns: usize, most: usize) = error ArrayEquation {
+        "a loop over components of {turns} turns"; at here, "unrolled at most {most} times";
         help "use arrays of variables in one component: their equations are not unrolled";
     }
-
-    pub(crate) fn no_element(
-        (array, element): (&str, i32), len: usize, (equation, counter): (Span, i32),
-    ) = error BadShape {
-        "`{array}` has no element {element}";
-        at equation, "reached for a counter of {counter}";
+    fn no_element((array, element): (&str, i32), len: usize, (equation, counter): (Span, i32)) = error BadShape {
+        "`{array}` has no element {element}"; at equation, "reached for a counter of {counter}";
         help "the array has {len} elements: change the bounds of the loop";
     }
-
-    pub(crate) fn clocked_when(at: Span) = error ClockBorder {
-        "`when` inside a clocked part";
-        at at, "everything here happens at the tick";
+    fn clocked_when(here: Span) = error ClockBorder {
+        "`when` inside a clocked part"; at here, "everything here happens at the tick";
         help "write `x = if … then … else pre(x);`";
     }
-
-    pub(crate) fn not_an_action(equation: Span) = error Misplaced {
-        "an event sets variables one by one";
-        at equation, "neither `reinit(x, e)` nor `d = e`";
+    fn not_an_action(equation: Span) = error Misplaced {
+        "an event sets variables one by one"; at equation, "neither `reinit(x, e)` nor `d = e`";
     }
-
-    pub(crate) fn sets_no_variable(target: Span) = error WrongType {
-        "no variable to set";
-        at target, "not a variable";
+    fn sets_no_variable(target: Span) = error WrongType {
+        "no variable to set"; at target, "not a variable";
     }
-
-    pub(crate) fn reinit_of_no_state(target: &Reference) = error WrongType {
-        "`{}` is not a state", target.dotted();
-        at target.span, "only a state can be reinitialised";
+    fn reinit_of_no_state(target: &Reference) = error WrongType {
+        "`{}` is not a state", target.dotted(); at target.span, "only a state can be reinitialised";
         help "set a discrete variable with `=`";
     }
-
-    pub(crate) fn sets_continuous(target: &Reference) = error WrongType {
-        "`{}` is continuous", target.dotted();
-        at target.span, "an event cannot equate it";
+    fn sets_continuous(target: &Reference) = error WrongType {
+        "`{}` is continuous", target.dotted(); at target.span, "an event cannot equate it";
         help "let a state jump with `reinit(x, e)`";
     }
-
-    pub(crate) fn clocked_modes(at: Span) = error ClockBorder {
-        "`modes` inside a clocked part";
-        at at, "everything here happens at the tick";
+    fn clocked_modes(here: Span) = error ClockBorder {
+        "`modes` inside a clocked part"; at here, "everything here happens at the tick";
         help "write `x = if … then … else pre(x);`";
     }
-
-    pub(crate) fn array_in_mode(equation: Span) = error ArrayEquation {
-        "an array equation in a mode";
-        at equation, "modes have scalar equations";
+    fn array_in_mode(equation: Span) = error ArrayEquation {
+        "an array equation in a mode"; at equation, "modes have scalar equations";
     }
-
-    pub(crate) fn values_of_mode(mode: &Name, wanted: usize, given: usize) = error BadArguments {
-        "the mode `{}` takes {wanted} values, not {given}", mode.text;
-        at mode.span, "entered here";
+    fn values_of_mode(mode: &Name, wanted: usize, given: usize) = error BadArguments {
+        "the mode `{}` takes {wanted} values, not {given}", mode.text; at mode.span, "entered here";
     }
-
-    pub(crate) fn no_value_of_mode(mode: &str, named: &Name, instead: &str) = error BadArguments {
-        "the mode `{mode}` has no `{}`", named.text;
-        at named.span, "unknown";
+    fn no_value_of_mode(mode: &str, named: &Name, instead: &str) = error BadArguments {
+        "the mode `{mode}` has no `{}`", named.text; at named.span, "unknown";
         help "it has `{instead}`";
     }
-
-    pub(crate) fn unknown_mode(mode: &Name, known: &[&str]) = error UnknownName {
-        "there is no mode `{}` here", mode.text;
-        at mode.span, "not known";
+    fn unknown_mode(mode: &Name, known: &[&str]) = error UnknownName {
+        "there is no mode `{}` here", mode.text; at mode.span, "not known";
         help "the modes are {}", listed(known);
     }
-
-    pub(crate) fn modes_differ((mode, own): (Span, usize), (first, count): (Span, usize)) = error ModeEquations {
-        "the modes have different numbers of equations";
-        at mode, "{} here", equations(own);
+    fn modes_differ((mode, own): (Span, usize), (first, count): (Span, usize)) = error ModeEquations {
+        "the modes have different numbers of equations"; at mode, "{} here", equations(own);
         at first, "{} here", equations(count);
         note "the modes replace each other's equations: each must determine the same unknowns";
         help "write an equation for the same variables in every mode: for a force that vanishes, `F = 0`";
     }
-
-    pub(crate) fn event_clock_with_more(clocked: &Name) = error BadArguments {
+    fn event_clock_with_more(clocked: &Name) = error BadArguments {
         "`{}` ticks at an event, and at nothing else", clocked.text;
         at clocked.span, "its other arguments are of a clock in time";
         help "write `clocked name(event = angle > next)`";
     }
-
-    pub(crate) fn sets_nothing_at_event(equation: Span) = error ClockedEquation {
-        "an equation of a clocked part that ticks at an event is not `x = …`";
-        at equation, "sets no variable";
+    fn sets_nothing_at_event(equation: Span) = error ClockedEquation {
+        "an equation of a clocked part that ticks at an event is not `x = …`"; at equation, "sets no variable";
         help "write `x = …` with the old values as `pre(x)`";
     }
-
-    pub(crate) fn input_unset_at_ticks(name: &str, tick: &str, declared: Span) = error UnboundInput {
-        "no equation determines `{name}` at the ticks of `{tick}`";
-        at declared, "declared here";
+    fn input_unset_at_ticks(name: &str, tick: &str, declared: Span) = error UnboundInput {
+        "no equation determines `{name}` at the ticks of `{tick}`"; at declared, "declared here";
         help "give it an equation in the clocked part: `{name} = …;`";
     }
-
-    pub(crate) fn unset_at_ticks(name: &str, tick: &str, declared: Span) = error TooFewEquations {
-        "no equation determines `{name}` at the ticks of `{tick}`";
-        at declared, "declared here";
+    fn unset_at_ticks(name: &str, tick: &str, declared: Span) = error TooFewEquations {
+        "no equation determines `{name}` at the ticks of `{tick}`"; at declared, "declared here";
         help "give it an equation in the clocked part: `{name} = …;`";
     }
-
-    pub(crate) fn circle_at_tick(names: &[String], equations: &[Span]) = error ClockedLoop {
+    fn circle_at_tick(names: &[String], equations: &[Span]) = error ClockedLoop {
         "{} depend on each other in a loop at one tick", names.join(", ");
         for &equation in equations { at equation, "in the circle"; }
         help "read one of them from the tick before: `pre(x)`";

@@ -8,39 +8,27 @@ use hyde_syntax::ast::{Name, Reference};
 const TO_CUT: &str = "open the loop at an input, an output, a clocked variable or a variable declared with its value; if there is none, add one to the loop: `Angle measured = rotor.phi;`";
 
 diagnostics! {
-    pub(crate) fn no_experiment(name: &str, file: Span) = error NoExperiment {
-        "the file has no experiment `{name}`";
-        at file, "searched in this file";
+    fn no_experiment(name: &str, file: Span) = error NoExperiment {
+        "the file has no experiment `{name}`"; at file, "searched in this file";
     }
-
-    pub(crate) fn expects_number(condition: Span) = error WrongType {
-        "an expectation is a condition";
-        at condition, "a number";
+    fn expects_number(condition: Span) = error WrongType {
+        "an expectation is a condition"; at condition, "a number";
         help "compare it: `expect max(abs(e)) < 10 [um]`";
     }
-
-    pub(crate) fn twice_in_budget(name: &Name, first: Span) = error Duplicate {
-        "the budget has `{}` twice", name.text;
-        at name.span, "here again";
-        at first, "here first";
+    fn twice_in_budget(name: &Name, first: Span) = error Duplicate {
+        "the budget has `{}` twice", name.text; at name.span, "here again"; at first, "here first";
         help "give it another name, or combine all changes in one: `play(a.gap = 0, b.gap = 0)`";
     }
-
-    pub(crate) fn unknown_method(method: &Name) = error BadSolve {
-        "there is no method `{}`", method.text;
-        at method.span, "not known";
+    fn unknown_method(method: &Name) = error BadSolve {
+        "there is no method `{}`", method.text; at method.span, "not known";
         help "methods are `ida`, `esdirk` and `auto`: `solve ida(rtol = 1e-6)`";
     }
-
-    pub(crate) fn unknown_option(name: &str, at: Span) = error BadSolve {
-        "the solver has no option `{name}`";
-        at at, "not known";
+    fn unknown_option(name: &str, here: Span) = error BadSolve {
+        "the solver has no option `{name}`"; at here, "not known";
         help "options are `rtol`, `atol`, `max_step` and `conserve`";
     }
-
-    pub(crate) fn not_positive(name: &str, at: Span) = error BadSolve {
-        "`{name}` must be positive";
-        at at, "zero or less";
+    fn not_positive(name: &str, here: Span) = error BadSolve {
+        "`{name}` must be positive"; at here, "zero or less";
         help "write `{}`, for example, or leave it out", match name {
             "rtol" => "rtol = 1e-6",
             "atol" => "atol = 1e-9",
@@ -48,130 +36,94 @@ diagnostics! {
             _ => "every 1 [ms]",
         };
     }
-
-    pub(crate) fn conserve_is_no_truth(value: Span) = error BadSolve {
-        "`conserve` is `true` or `false`";
-        at value, "neither of them";
+    fn conserve_is_no_truth(value: Span) = error BadSolve {
+        "`conserve` is `true` or `false`"; at value, "neither of them";
         help "write `conserve = true` where energy must be kept over a long run, else leave it out";
     }
-
-    pub(crate) fn not_a_free_input(target: &Reference, bound: bool, inputs: &[&str]) = error NotAnInput {
-        "`{}` is not a free input of the model", target.dotted();
-        at target.span, "cannot be driven";
+    fn not_a_free_input(target: &Reference, bound: bool, inputs: &[&str]) = error NotAnInput {
+        "`{}` is not a free input of the model", target.dotted(); at target.span, "cannot be driven";
         match inputs {
             _ if bound => { help "it has a value in the model: take that away, and it can be driven"; }
             [] => { help "declare it in the model: `input Length r;`"; }
             inputs => { help "its inputs are {}", listed(inputs); }
         }
     }
-
-    pub(crate) fn noise_without_column(target: &Reference, value: Span) = error NoColumn {
+    fn noise_without_column(target: &Reference, value: Span) = error NoColumn {
         "`{}` has noise, but its stimulus is not a single column", target.dotted();
         at value, "neither a column of a record nor a column times a number";
         help "only a recorded column has noise: remove `~`, or write `file.i ~ 15 [mA]`";
     }
-
-    pub(crate) fn not_driven(name: &str, declared: Span, experiment: Option<&str>) = error UndrivenInput {
-        "the input `{}` is not driven", short(name);
-        at declared, "a free input of the model";
+    fn not_driven(name: &str, declared: Span, experiment: Option<&str>) = error UndrivenInput {
+        "the input `{}` is not driven", short(name); at declared, "a free input of the model";
         match experiment {
             Some(experiment) => { help "write in `experiment {experiment}`: `stimulus {name} = …;`"; }
             None => { help "run an experiment that drives it: `stimulus {name} = …;`"; }
         }
     }
-
-    pub(crate) fn figure_twice(name: &Name) = error Duplicate {
-        "there is already a figure `{}`", name.text;
-        at name.span, "its files would overwrite those of the first";
+    fn figure_twice(name: &Name) = error Duplicate {
+        "there is already a figure `{}`", name.text; at name.span, "its files would overwrite those of the first";
         help "give it another name";
     }
-
-    pub(crate) fn circle_among_panels(panel: Span) = error BadArguments {
-        "a circle is combined with other panels";
-        at panel, "its axes are lengths, not times";
+    fn circle_among_panels(panel: Span) = error BadArguments {
+        "a circle is combined with other panels"; at panel, "its axes are lengths, not times";
         help "use a separate figure: `figure contour = circle(x, y, R);`";
     }
-
-    pub(crate) fn circle_over(over: Span) = error BadArguments {
-        "a circle cannot be plotted over another variable";
-        at over, "x and y are its axes";
+    fn circle_over(over: Span) = error BadArguments {
+        "a circle cannot be plotted over another variable"; at over, "x and y are its axes";
         help "leave out `over`";
     }
-
-    pub(crate) fn circle_takes_three(call: Span) = error BadArguments {
-        "`circle` takes x, y and the radius";
-        at call, "x and y are relative to the centre";
+    fn circle_takes_three(call: Span) = error BadArguments {
+        "`circle` takes x, y and the radius"; at call, "x and y are relative to the centre";
         help "write `circle(x, y - 25 [mm], 25 [mm])`";
     }
-
-    pub(crate) fn named_arguments_of_circle(call: Span) = error BadArguments {
-        "the arguments of `circle` have no names";
-        at call, "x and y are relative to the centre";
+    fn named_arguments_of_circle(call: Span) = error BadArguments {
+        "the arguments of `circle` have no names"; at call, "x and y are relative to the centre";
         help "write `circle(x, y - 25 [mm], 25 [mm])`";
     }
-
-    pub(crate) fn response_of_no_input(input: &str, at: Span) = error NotAnInput {
-        "`{input}` is not an input";
-        at at, "a frequency response starts at an input of the model";
+    fn response_of_no_input(input: &str, here: Span) = error NotAnInput {
+        "`{input}` is not an input"; at here, "a frequency response starts at an input of the model";
     }
-
-    pub(crate) fn no_modes(of: &Reference, known: &[&str]) = error UnknownName {
-        "`{}` has no modes", of.dotted();
-        at of.span, "no `modes` block";
+    fn no_modes(of: &Reference, known: &[&str]) = error UnknownName {
+        "`{}` has no modes", of.dotted(); at of.span, "no `modes` block";
         help "modes are in {}", listed(known);
     }
-
-    pub(crate) fn no_mode(path: &str, mode: &Name, known: &[&str]) = error UnknownName {
-        "`{path}` has no mode `{}`", mode.text;
-        at mode.span, "not known";
+    fn no_mode(path: &str, mode: &Name, known: &[&str]) = error UnknownName {
+        "`{path}` has no mode `{}`", mode.text; at mode.span, "not known";
         help "its modes are {}", listed(known);
     }
-
-    pub(crate) fn cuts_no_signal(signal: &Reference) = error CannotCut {
+    fn cuts_no_signal(signal: &Reference) = error CannotCut {
         "`{}` is not a signal: a loop cannot be opened there", signal.dotted();
         at signal.span, "not a variable of the model";
         help "{TO_CUT}";
     }
-
-    pub(crate) fn cuts_array(signal: &Reference) = error CannotCut {
+    fn cuts_array(signal: &Reference) = error CannotCut {
         "`{}` is an array: a loop cannot be opened there", signal.dotted();
         at signal.span, "name one of its elements";
         help "{TO_CUT}";
     }
-
-    pub(crate) fn cuts_no_equation(signal: &Reference) = error CannotCut {
+    fn cuts_no_equation(signal: &Reference) = error CannotCut {
         "`{}` has no equation of its own: a loop cannot be opened there", signal.dotted();
         at signal.span, "no equation of its own: `name = …`";
         help "{TO_CUT}";
     }
-
-    pub(crate) fn unknown_steps(method: &Name) = error BadSolve {
-        "no response is measured by `{}`", method.text;
-        at method.span, "not known";
+    fn unknown_steps(method: &Name) = error BadSolve {
+        "no response is measured by `{}`", method.text; at method.span, "not known";
         help "write `by stepped(amplitude = …)`; a swept sine is the stimulus itself";
     }
-
-    pub(crate) fn unknown_option_of_steps(at: Span, known: &[&str]) = error BadSolve {
-        "`stepped` has no such option";
-        at at, "not known";
+    fn unknown_option_of_steps(here: Span, known: &[&str]) = error BadSolve {
+        "`stepped` has no such option"; at here, "not known";
         help "its options are {}", listed(known);
     }
-
-    pub(crate) fn no_amplitude(method: Span) = error BadSolve {
-        "a stepped sine has an amplitude";
-        at method, "none is given";
+    fn no_amplitude(method: Span) = error BadSolve {
+        "a stepped sine has an amplitude"; at method, "none is given";
         help "write `by stepped(amplitude = 0.25 [V])`, in the unit of the input";
     }
-
-    pub(crate) fn keep_without_level(alone: Span) = error BadSolve {
-        "`keep` and `level` go together";
-        at alone, "alone here";
+    fn keep_without_level(alone: Span) = error BadSolve {
+        "`keep` and `level` go together"; at alone, "alone here";
         help "write `keep = table.acc, level = 1 [m/s2]`";
     }
-
-    pub(crate) fn keeps_no_response(text: &str, at: Span, responses: &[&str]) = error BadSolve {
-        "`{text}` is not one of the responses";
-        at at, "cannot be kept at a level";
+    fn keeps_no_response(text: &str, here: Span, responses: &[&str]) = error BadSolve {
+        "`{text}` is not one of the responses"; at here, "cannot be kept at a level";
         help "the responses are {}", listed(responses);
     }
 }

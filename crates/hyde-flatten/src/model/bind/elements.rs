@@ -8,7 +8,7 @@
 
 use crate::instance::{Binding, Elementwise, Position, Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::values as refused;
 use hyde_syntax::ast::{Expr, ExprKind, UnitText};
 
 /// The values of a binding.
@@ -42,7 +42,7 @@ impl<'a> Model<'a, '_> {
                 return Elements::All(self.in_unit(value, unit));
             }
             Some(found) if found != len => {
-                self.not_as_many(expr.span, found, len);
+                self.report(refused::not_as_many(found, len, expr.span));
                 return Elements::All(self.poison(expr.span));
             }
             Some(_) => {}
@@ -83,7 +83,7 @@ impl<'a> Model<'a, '_> {
                 break;
             };
             if found != position.of {
-                self.not_as_many(expr.span, found, position.of);
+                self.report(refused::not_as_many(found, position.of, expr.span));
                 break;
             }
             match &expr.kind {
@@ -114,13 +114,5 @@ impl<'a> Model<'a, '_> {
             }
         }
         (expr, unit, scope)
-    }
-
-    fn not_as_many(&mut self, span: Span, found: usize, len: usize) {
-        self.report(
-            Diagnostic::error(Code::BadShape, format!("{found} values for {len} elements"))
-                .label(span, format!("{found} values"))
-                .help("give a value for each element, or one value for all without braces"),
-        );
     }
 }

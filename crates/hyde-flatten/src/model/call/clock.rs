@@ -4,8 +4,9 @@ use crate::dimension::Dim;
 use crate::instance::{Counter, Elementwise, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::call::delay::moves_with_counter;
+use crate::refusals::calls as refused;
 use crate::turns::Turns;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
 use hyde_ir::{ClockId, Expr as Ir, ExprId, FlatModel, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
@@ -18,10 +19,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         let ExprKind::Reference(reference) = &a.kind else {
-            self.report(
-                Diagnostic::error(Code::BadArguments, "`pre` takes a variable")
-                    .label(a.span, "an expression"),
-            );
+            self.report(refused::pre_of_expression(a.span));
             return self.poison(span);
         };
         let inner = self.lower(a, &scope.with(Setting::Report));
@@ -39,11 +37,7 @@ impl<'a> Model<'a, '_> {
             _ => false,
         };
         if !allowed {
-            self.report(
-                Diagnostic::error(Code::ClockBorder, format!("`pre({})` has no meaning here", reference.dotted()))
-                    .label(span, "there is no value before")
-                    .help("`pre` takes a variable of the same clocked part, or a discrete one at an event"),
-            );
+            self.report(refused::pre_without_meaning(reference, span));
         }
         let id = self.flat.exprs.add(Ir::Pre(var, index));
         Typed {
@@ -58,24 +52,13 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         if scope.setting != Setting::Clocked {
-            self.report(
-                Diagnostic::error(Code::ClockBorder, "`sample` outside a clocked part")
-                    .label(span, "there is no clock here")
-                    .help("`sample` brings a continuous value into `clocked … end`"),
-            );
+            self.report(refused::sample_outside_clocked(span));
             return self.poison(span);
         }
         let inner = self.lower(a, &scope.with(Setting::Report));
         if let Some(clock) = clocks_of(&self.flat, inner.id).first().copied() {
             let name = self.flat.clocks[clock].name.clone();
-            self.report(
-                Diagnostic::error(
-                    Code::ClockBorder,
-                    format!("the sampled value belongs to the clocked part `{name}`"),
-                )
-                .label(a.span, "clocked already")
-                .help("read it without `sample`"),
-            );
+            self.report(refused::sample_of_clocked(&name, a.span));
         }
         Typed {
             span,
@@ -91,11 +74,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         if matches!(scope.setting, Setting::Clocked | Setting::Parameter) {
-            self.report(
-                Diagnostic::error(Code::ClockBorder, "`hold` inside a clocked part")
-                    .label(span, "nothing to hold here")
-                    .help("read the variable of the other clocked part directly"),
-            );
+            self.report(refused::hold_in_clocked(span));
             return self.poison(span);
         }
         if matches!(scope.elementwise, Some(Elementwise::Range(_))) {
@@ -106,14 +85,7 @@ impl<'a> Model<'a, '_> {
         let inner = self.value(a, &scope.with(Setting::Clocked));
         let clocks = clocks_of(&self.flat, inner.id);
         let [clock] = clocks.as_slice() else {
-            self.report(
-                Diagnostic::error(
-                    Code::ClockBorder,
-                    "`hold` takes a value of one clocked part",
-                )
-                .label(a.span, format!("belongs to {}", clocks.len()))
-                .help("hold each value separately"),
-            );
+            self.report(refused::hold_of_several(clocks.len(), a.span));
             return self.poison(span);
         };
         let clock = *clock;
@@ -214,11 +186,7 @@ impl<'a> Model<'a, '_> {
             let id = self.flat.exprs.var(*held);
             return self.typed(id, inner.dim, span);
         }
-        self.report(
-            Diagnostic::error(Code::BadArguments, "`held` takes a column of a record")
-                .label(a.span, "no column")
-                .help("a clocked value is held with `hold`"),
-        );
+        self.report(refused::held_of_no_column(a.span));
         self.poison(span)
     }
 
@@ -233,10 +201,7 @@ impl<'a> Model<'a, '_> {
                 self.typed(id, Dim::known(Dimension::TIME), span)
             }
             _ => {
-                self.report(
-                    Diagnostic::error(Code::ClockBorder, "`interval()` outside a clocked part")
-                        .label(span, "there is no clock here"),
-                );
+                self.report(refused::interval_outside_clocked(span));
                 self.poison(span)
             }
         }

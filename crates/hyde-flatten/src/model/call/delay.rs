@@ -10,7 +10,8 @@ use crate::Form;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use crate::refusals::calls as refused;
+use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::{Delay, Equation};
 use hyde_ir::{DelayId, Expr as Ir, ExprId, Id as _, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::Expr;
@@ -34,16 +35,10 @@ impl<'a> Model<'a, '_> {
             scope.setting,
             Setting::Clocked | Setting::Parameter | Setting::Measure
         ) {
-            let diagnostic = if scope.setting == Setting::Clocked {
-                Diagnostic::error(Code::ClockBorder, "`delay` inside a clocked part")
-                    .label(span, "here time advances in ticks")
-                    .help("`pre(x)` is one tick ago; a continuous value is delayed outside: `sample(delay(u, T))`")
-            } else {
-                Diagnostic::error(Code::NotConstant, "`delay` has no meaning here")
-                    .label(span, "there is no time here")
-                    .help("declare a variable `v = delay(u, T)` and use that")
-            };
-            self.report(diagnostic);
+            self.report(match scope.setting == Setting::Clocked {
+                true => refused::delay_in_clocked(span),
+                false => refused::delay_without_time(span),
+            });
             return self.poison(span);
         }
         let Some(time) = self.delay_time(by, scope) else {
@@ -90,11 +85,7 @@ impl<'a> Model<'a, '_> {
             return None;
         };
         if !(value >= 0.0 && value.is_finite()) {
-            self.report(
-                Diagnostic::error(Code::BadArguments, format!("a delay of {value} s"))
-                    .label(by.span, "is negative")
-                    .help("a delay must be 0 or more: future values are not known"),
-            );
+            self.report(refused::negative_delay(value, by.span));
             return None;
         }
         let exprs = &mut self.flat.exprs;
@@ -115,14 +106,7 @@ impl<'a> Model<'a, '_> {
         let (var, index) = match self.flat.exprs[u.id].access() {
             Some((var, index, false)) => (var, index),
             Some(_) | None if self.flat.exprs.any(u.id, moves_with_counter) => {
-                self.report(
-                    Diagnostic::error(
-                        Code::ArrayEquation,
-                        "an expression of whole arrays cannot be delayed",
-                    )
-                    .label(u.span, "has no name")
-                    .help("give it one: `Real u[n] = …;` and write `delay(u, T)`"),
-                );
+                self.report(refused::delay_of_arrays(u.span));
                 return u.id;
             }
             Some(_) | None => (self.named(u, scope), Index::SCALAR),

@@ -9,8 +9,9 @@ use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::lower::Resolved;
+use crate::refusals::calls as refused;
 use crate::wrap::wrapped;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, Memo, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
 use hyde_units::Dimension;
@@ -22,10 +23,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         if scope.setting == Setting::Parameter {
-            self.report(
-                Diagnostic::error(Code::ClockBorder, "no derivative exists here")
-                    .label(span, "of a parameter"),
-            );
+            self.report(refused::derivative_of_parameter(span));
             return self.poison(span);
         }
         if scope.setting == Setting::Clocked {
@@ -51,11 +49,7 @@ impl<'a> Model<'a, '_> {
             return self.typed(id, inner.dim.divide(&Dim::known(Dimension::TIME)), span);
         }
         let written = hyde_syntax::format_expression(a);
-        self.report(
-            Diagnostic::error(Code::ClockBorder, format!("`{written}` is not a variable of this clocked part"))
-                .label(span, "in a clocked part `der` is the difference to the last tick")
-                .help(format!("declare a variable with its value before the first tick: `Real u(start = …) = {written};`, and write `der(u)`")),
-        );
+        self.report(refused::derivative_in_clocked(&written, span));
         self.poison(span)
     }
 
@@ -94,18 +88,10 @@ impl<'a> Model<'a, '_> {
             | Ir::NoEvent(_) => None,
         });
         if second {
-            self.report(
-                Diagnostic::error(Code::BadArguments, "the derivative of a derivative")
-                    .label(span, "needs a name for the first derivative")
-                    .help("declare it: `Velocity v = der(s);` and write `der(v)`"),
-            );
+            self.report(refused::second_derivative(span));
         }
         if delayed {
-            self.report(
-                Diagnostic::error(Code::BadArguments, "the derivative of a delayed value")
-                    .label(span, "is not known here")
-                    .help("delay the derivative: `delay(der(u), T)`"),
-            );
+            self.report(refused::derivative_of_delayed(span));
         }
         result
     }
@@ -116,23 +102,11 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         let ExprKind::Reference(name) = &by.kind else {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    "the second argument of `partial` is a variable",
-                )
-                .label(by.span, "an expression"),
-            );
+            self.report(refused::partial_by_no_variable(by.span, "an expression"));
             return self.poison(span);
         };
         let Some(Resolved::Variable(var, index)) = self.resolve(name, scope) else {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    "the second argument of `partial` is a variable",
-                )
-                .label(by.span, "no variable"),
-            );
+            self.report(refused::partial_by_no_variable(by.span, "no variable"));
             return self.poison(span);
         };
         let index = index.unwrap_or_default();

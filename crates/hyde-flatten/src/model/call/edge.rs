@@ -9,7 +9,8 @@
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use crate::refusals::calls as refused;
+use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::Edge;
 use hyde_ir::{BinaryOp, Expr as Ir, ExprId, UnaryOp, VariableKind};
 use hyde_syntax::ast::Expr;
@@ -26,13 +27,7 @@ impl<'a> Model<'a, '_> {
             }
             Setting::Clocked => self.edge_at_ticks(a, scope),
             Setting::Equation | Setting::Parameter | Setting::Report | Setting::Measure => {
-                self.report(
-                    Diagnostic::error(Code::BadArguments, "an edge has no duration")
-                        .label(span, "is never true between events")
-                        .help(
-                            "let an event set a variable: `when b then n = pre(n) + 1; end when;`",
-                        ),
-                );
+                self.report(refused::edge_between_events(span));
                 return self.poison(span);
             }
         };
@@ -70,14 +65,7 @@ impl<'a> Model<'a, '_> {
     fn edge_at_ticks(&mut self, a: &'a Expr, scope: &Scope<'a>) -> ExprId {
         let now = self.truth(a, scope);
         let Ir::Var(var, index) = self.flat.exprs[now] else {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    "in a clocked part `edge` takes a variable",
-                )
-                .label(a.span, "an expression")
-                .help("give it a name: `Boolean b = …;` and write `edge(b)`"),
-            );
+            self.report(refused::edge_of_expression(a.span));
             return now;
         };
         let arena = &mut self.flat.exprs;

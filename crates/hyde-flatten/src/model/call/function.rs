@@ -5,12 +5,13 @@
 
 use crate::dimension::Dim;
 use crate::instance::{FieldPlace, InstanceId, Scope, Setting, Typed};
-use crate::instantiate::{quantity, too_deep};
+use crate::instantiate::quantity;
 use crate::model::Model;
 use crate::names::FileIndex;
+use crate::refusals::calls as refused;
 use crate::turns::Turns;
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::ExprId;
 use hyde_syntax::ast::{
     Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Prefix, Reference,
@@ -109,32 +110,22 @@ impl<'a> Model<'a, '_> {
             self.calls.count = 0;
         }
         self.calls.count += 1;
-        let name = (class.name.span, "called once more here");
+
         if within.iter().any(|&known| std::ptr::eq(known, class)) {
-            self.report(
-                Diagnostic::error(Code::Cycle, format!("`{}` calls itself", class.name.text))
-                    .label(class.name.span, "calls itself")
-                    .help("a function is an expression: it cannot call itself"),
-            );
+            self.report(refused::calls_itself(&class.name));
             return false;
         }
         if within.len() == MAX_DEPTH {
-            too_deep(
-                self.diagnostics,
-                format!("more than {MAX_DEPTH} functions call each other in a chain"),
-                name,
-                "write the expression where it is called, in fewer functions",
-            );
+            self.report(refused::long_chain_of_calls(MAX_DEPTH, class.name.span));
             return false;
         }
         if self.calls.count == MAX_CALLS + 1 {
             let outermost = within.first().map_or("", |class| &class.name.text);
-            too_deep(
-                self.diagnostics,
-                format!("a call of `{outermost}` leads to more than {MAX_CALLS} others"),
-                name,
-                "give a call that a function uses twice a name: `Real part = f(x);`",
-            );
+            self.report(refused::too_many_calls(
+                outermost,
+                MAX_CALLS,
+                class.name.span,
+            ));
         }
         self.calls.count <= MAX_CALLS
     }
@@ -179,18 +170,8 @@ impl<'a> Model<'a, '_> {
             .filter(|(d, _)| d.prefixes.contains(&Prefix::Output));
         let outputs: Vec<&Declarator> = outputs.map(|(_, declarator)| *declarator).collect();
         if let [first, second, ..] = outputs.as_slice() {
-            let name = &class.name.text;
-            let message = format!(
-                "the function `{name}` has {} outputs, and a call gives one value",
-                outputs.len()
-            );
-            self.report(
-                Diagnostic::error(Code::BadArguments, message)
-                    .label(span, "called here")
-                    .label(first.name.span, "one output")
-                    .label(second.name.span, "another one")
-                    .help("write a function for each of them; declare without `output` what only the function needs"),
-            );
+            let (name, both) = (&class.name.text, [first.name.span, second.name.span]);
+            self.report(refused::several_outputs(name, span, outputs.len(), both));
             return None;
         }
         let mut output = None;
@@ -241,30 +222,15 @@ impl<'a> Model<'a, '_> {
             values.push((name, value));
         }
         if let Some(argument) = rest.first() {
-            let name = &class.name.text;
-            let message = match &argument.name {
-                Some(word) => format!("`{name}` has no input `{}`", word.text),
-                None => format!("`{name}` takes fewer arguments"),
-            };
-            self.report(
-                Diagnostic::error(Code::BadArguments, message)
-                    .label(argument.value.span, "not an input")
-                    .label(class.name.span, "declared here"),
-            );
+            let given = (argument.name.as_ref(), argument.value.span);
+            self.report(refused::no_such_input(&class.name, given));
             return None;
         }
         if let Some(value) = &output {
             let known = self.calls.known.entry(key).or_default();
             known.push((call, value.clone()));
         } else {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    format!("the function `{}` has no output", class.name.text),
-                )
-                .label(class.name.span, "gives no value")
-                .help("declare one: `output Force F = c*v^2;`"),
-            );
+            self.report(refused::no_output(&class.name));
         }
         output
     }
@@ -284,20 +250,7 @@ impl<'a> Model<'a, '_> {
                 continue;
             }
             let Element::Declaration(declaration) = element else {
-                self.report(
-                    Diagnostic::error(
-                        Code::NotYet,
-                        format!(
-                            "the function `{}` has more than declarations",
-                            class.name.text
-                        ),
-                    )
-                    .label(
-                        class.name.span,
-                        "inputs, variables and an output, each with its value",
-                    )
-                    .help("give the value where it is declared: `output Force F = c*v^2;`"),
-                );
+                self.report(refused::more_than_declarations(&class.name));
                 return None;
             };
             found.extend(declaration.declarators.iter().map(|d| (declaration, d)));
@@ -306,21 +259,10 @@ impl<'a> Model<'a, '_> {
     }
 
     fn no_value_in(&mut self, class: &Class, declarator: &Declarator, input: bool, span: Span) {
-        let (function, name) = (&class.name.text, &declarator.name.text);
-        self.report(if input {
-            Diagnostic::error(
-                Code::BadArguments,
-                format!("`{function}` needs its input `{name}`"),
-            )
-            .label(span, "not given")
-            .label(declarator.name.span, "declared here")
-        } else {
-            Diagnostic::error(
-                Code::NoValue,
-                format!("`{name}` of `{function}` has no value"),
-            )
-            .label(declarator.name.span, "declared without one")
-            .help(format!("write `{name} = …`"))
+        let function = &class.name.text;
+        self.report(match input {
+            true => refused::input_not_given(function, declarator, span),
+            false => refused::no_value_in_function(function, declarator),
         });
     }
 }

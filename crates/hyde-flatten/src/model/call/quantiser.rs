@@ -3,7 +3,8 @@
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::calls as refused;
+use hyde_diag::Span;
 use hyde_ir::{BinaryOp, UnaryOp};
 use hyde_syntax::ast::Expr;
 
@@ -17,11 +18,7 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) -> Typed {
         if matches!(scope.setting, Setting::Equation | Setting::Condition) {
-            self.report(
-                Diagnostic::error(Code::QuantiserOnContinuous, format!("`{name}` on a continuous value"))
-                    .label(span, "every step would be an event, thousands per second")
-                    .help(format!("quantise the sampled value: `{name}(sample(…), …)` in a clocked part, or in `measured`")),
-            );
+            self.report(refused::quantiser_of_continuous(name, span));
         }
         let operands = if matches!(name, "floor" | "ceil" | "integer") {
             let one = self.exactly(name, args, span);

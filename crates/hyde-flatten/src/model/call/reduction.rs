@@ -4,8 +4,9 @@
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
+use crate::refusals::calls as refused;
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::{Reduction, ReductionKind};
 use hyde_ir::{BinaryOp, ExprId, UnaryOp, VariableKind};
 use hyde_syntax::ast::{Binary, Expr, ExprKind, Unary};
@@ -31,14 +32,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         if scope.setting != Setting::Measure {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    format!("`{name}` of a signal has a meaning over a whole run only"),
-                )
-                .label(span, "not in a measure or expectation")
-                .help("write it in `measure` or `expect`"),
-            );
+            self.report(refused::reduction_outside_measure(name, span));
             return self.poison(span);
         }
         let over_run = scope.with(Setting::Report);

@@ -3,7 +3,8 @@
 use crate::dimension::Dim;
 use crate::instance::{Elementwise, Position, Scope, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::calls as refused;
+use hyde_diag::Span;
 use hyde_syntax::ast::Expr;
 
 impl<'a> Model<'a, '_> {
@@ -12,20 +13,11 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         let Some(len) = self.array_length(a, scope) else {
-            self.report(
-                Diagnostic::error(Code::BadShape, "`sum` takes an array")
-                    .label(a.span, "one value"),
-            );
+            self.report(refused::sum_of_one(a.span));
             return self.poison(span);
         };
         if len > 64 {
-            self.report(
-                Diagnostic::error(
-                    Code::NotYet,
-                    "`sum` over more than 64 elements in this version",
-                )
-                .label(a.span, format!("has {len} elements")),
-            );
+            self.report(refused::long_sum(len, a.span));
             return self.poison(span);
         }
         let mut total = self.flat.exprs.constant(0.0);

@@ -10,7 +10,8 @@ mod file;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::calls as refused;
+use hyde_diag::Span;
 use hyde_ir::{BinaryOp, ExprArena, ExprId};
 use hyde_syntax::ast::{Expr, ExprKind};
 
@@ -66,25 +67,11 @@ impl<'a> Model<'a, '_> {
     ) -> Option<(Points, Points)> {
         let (xs, ys) = (self.points(xs, scope)?, self.points(ys, scope)?);
         if xs.0.len() != ys.0.len() || xs.0.len() < 2 {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("{} places and {} values", xs.0.len(), ys.0.len()),
-                )
-                .label(
-                    span,
-                    "a table has a value at each of its places, and two at least",
-                ),
-            );
+            self.report(refused::points_of_table(xs.0.len(), ys.0.len(), span));
             return None;
         }
         if let Some(at) = xs.0.windows(2).position(|pair| pair[0] >= pair[1]) {
-            self.report(
-                Diagnostic::error(Code::BadShape, "the places of a table ascend").label(
-                    span,
-                    format!("{} is followed by {}", xs.0[at], xs.0[at + 1]),
-                ),
-            );
+            self.report(refused::places_descend(xs.0[at], xs.0[at + 1], span));
             return None;
         }
         Some((xs, ys))
@@ -93,11 +80,7 @@ impl<'a> Model<'a, '_> {
     /// The numbers of a list, in SI, with their dimension.
     fn points(&mut self, list: &'a Expr, scope: &Scope<'a>) -> Option<Points> {
         let ExprKind::Array(items, unit) = &list.kind else {
-            self.report(
-                Diagnostic::error(Code::BadShape, "a table is made of two lists")
-                    .label(list.span, "no list")
-                    .help("write `table(x, {0, 1, 2}, {0, 1, 4})`"),
-            );
+            self.report(refused::table_of_no_lists(list.span));
             return None;
         };
         let inner = scope.with(Setting::Parameter);

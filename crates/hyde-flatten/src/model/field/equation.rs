@@ -5,7 +5,8 @@ use super::point::Point;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
 use crate::instantiate::domain_named;
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use crate::refusals::fields as refused;
+use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::Equation;
 use hyde_ir::{Expr as Ir, ExprId, Index, Range, VarId};
 use hyde_syntax::ast::{Binary, Expr, ExprKind, Place, Unary};
@@ -77,11 +78,7 @@ impl<'a> Model<'a, '_> {
             None => self.interior(domain, lhs, rhs, place, scope, span),
             Some(("left", _)) => self.boundary(domain, 0, lhs, rhs, scope, span),
             Some(("right", _)) => self.boundary(domain, self.cells(domain), lhs, rhs, scope, span),
-            Some((other, at)) => self.report(
-                Diagnostic::error(Code::FieldUse, format!("a domain has no end `{other}`"))
-                    .label(at, "not an end")
-                    .help(format!("write `{name}.left` or `{name}.right`")),
-            ),
+            Some((other, at)) => self.report(refused::no_end(name, (other, at))),
         }
     }
 

@@ -12,7 +12,8 @@
 
 use crate::instance::{DomainId, FieldPlace, InstanceId, Scope, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::fields as refused;
+use hyde_diag::Span;
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, Range};
 use hyde_syntax::ast::{Expr, ExprKind};
 
@@ -33,11 +34,7 @@ impl<'a> Model<'a, '_> {
     ) -> Option<(Range, Typed)> {
         let [integrand, over] = self.exactly("integral", args, span)?;
         let Some(domain) = self.domain_of(over, scope.instance) else {
-            self.report(
-                Diagnostic::error(Code::FieldUse, "an integral is taken over a domain")
-                    .label(over.span, "not a domain of this component")
-                    .help("write `integral(rho*A*v^2/2, bar)` with `domain bar(…)`"),
-            );
+            self.report(refused::integral_over_no_domain(over.span));
             return None;
         };
         let (_, h, length) = self.mesh(domain);

@@ -15,7 +15,8 @@ use super::kernel::kernel;
 use crate::dimension::Dim;
 use crate::instance::{DomainId, Scope, Setting, Typed, WeightArray};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use crate::refusals::fields as refused;
+use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::{Assert, Equation};
 use hyde_ir::{BinaryOp, Expr as Ir, ExprArena, ExprId, Index, Memo, Range, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
@@ -91,14 +92,11 @@ impl<'a> Model<'a, '_> {
         let cells = self.domains[domain].cells;
         let outside = !(-1e-9..=cells as f64 + 1e-9).contains(&value);
         if outside {
-            self.report(
-                Diagnostic::error(Code::FieldUse, "the position is outside the domain")
-                    .label(
-                        at.span,
-                        format!("{value:.3} cells from the start, of {cells}"),
-                    )
-                    .label(self.domains[domain].span, "the domain"),
-            );
+            self.report(refused::outside_domain(
+                (value, cells),
+                at.span,
+                self.domains[domain].span,
+            ));
             return None;
         }
         let nearest = value.round();
@@ -120,12 +118,11 @@ impl<'a> Model<'a, '_> {
     ) -> Option<Point> {
         let cells = self.domains[domain].cells;
         if cells < LEAST_CELLS {
-            self.report(
-                Diagnostic::error(Code::FieldUse, "too few cells for a moving position")
-                    .label(at.span, "moves along the domain")
-                    .label(self.domains[domain].span, format!("has {cells}"))
-                    .help(format!("discretize it with `n = {LEAST_CELLS}` or more")),
-            );
+            self.report(refused::too_few_cells(
+                (cells, LEAST_CELLS),
+                at.span,
+                self.domains[domain].span,
+            ));
             return None;
         }
         let arena = &mut self.flat.exprs;

@@ -14,7 +14,8 @@
 
 use crate::instance::{InstanceId, Scope, Setting};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::fields as refused;
+use hyde_diag::Span;
 use hyde_syntax::ast::{
     self, Binary, Element, EquationKind, ExperimentItem, Expr, ExprKind, Reference, Unary,
 };
@@ -74,15 +75,7 @@ impl<'a> Model<'a, '_> {
                 Err(obstacle) => {
                     let (expr, why) = obstacle?;
                     let name = &domain.name.text;
-                    self.report(
-                        Diagnostic::error(
-                            Code::WaveSpeed,
-                            format!("how fast waves run along `{name}` is not known"),
-                        )
-                        .label(expr.span, why)
-                        .label(asked, "requests as many cells as they need")
-                        .help("give the number: `fem(n = 24)`"),
-                    );
+                    self.report(refused::unknown_wave_speed(name, (expr.span, why), asked));
                     return None;
                 }
             }

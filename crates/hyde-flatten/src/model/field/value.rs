@@ -4,7 +4,8 @@ use super::mesh::shifted;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
 use crate::model::Model;
 use crate::model::lower::Resolved;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::fields as refused;
+use hyde_diag::Span;
 use hyde_ir::{Expr as Ir, ExprId, Index, VarId};
 use hyde_syntax::ast::{Expr, ExprKind, Reference};
 
@@ -22,17 +23,15 @@ impl<'a> Model<'a, '_> {
             FieldPlace::Cell(domain, index) => (domain, index, true),
             FieldPlace::Nowhere => {
                 let name = self.flat.variables[var].name.clone();
-                self.field_needs_place(&name, span);
+                self.report(refused::needs_place(&name, span));
                 return self.poison(span);
             }
         };
         if domain != field.domain {
-            self.report(
-                Diagnostic::error(Code::FieldUse, "a field of another domain").label(
-                    span,
-                    format!("lies on `{}`", self.domains[field.domain].name),
-                ),
-            );
+            self.report(refused::of_another_domain(
+                self.domains[field.domain].name,
+                span,
+            ));
             return self.poison(span);
         }
         let id = match (field.flux, cell) {
@@ -48,17 +47,7 @@ impl<'a> Model<'a, '_> {
                 Some(trace) => self.flat.exprs.var(trace),
                 None => {
                     let name = self.flat.variables[var].name.clone();
-                    self.report(
-                        Diagnostic::error(
-                            Code::FieldUse,
-                            format!("the flux `{name}` is used outside `pder`"),
-                        )
-                        .label(
-                            span,
-                            "a flux lies between the nodes, this is evaluated at them",
-                        )
-                        .help("write `pder(q, x)`, or read the flux in another flux"),
-                    );
+                    self.report(refused::flux_outside_pder(&name, span));
                     return self.poison(span);
                 }
             },
@@ -100,13 +89,7 @@ impl<'a> Model<'a, '_> {
         };
         let coordinate = self.domains[field.domain].coordinate;
         if !matches!(&by.kind, ExprKind::Reference(name) if name.as_word() == Some(coordinate)) {
-            self.report(
-                Diagnostic::error(
-                    Code::FieldUse,
-                    format!("the coordinate of this field is `{coordinate}`"),
-                )
-                .label(by.span, "not its coordinate"),
-            );
+            self.report(refused::wrong_coordinate(coordinate, by.span));
         }
         let (_, h, length) = self.mesh(field.domain);
         let dim = self.dim(var).divide(&length);
@@ -120,22 +103,11 @@ impl<'a> Model<'a, '_> {
                 self.flux_difference(var, field.domain, index, h)
             }
             (false, _) => {
-                self.report(
-                    Diagnostic::error(Code::FieldUse, "a space derivative outside a flux")
-                        .label(span, "an equation of a field takes derivatives of fluxes")
-                        .help("give the flux a name: `field Torque q on bar = k*pder(th, x);` and write `pder(q, x)`"),
-                );
+                self.report(refused::slope_outside_flux(span));
                 return self.poison(span);
             }
             (true, _) => {
-                self.report(
-                    Diagnostic::error(
-                        Code::FieldUse,
-                        "the derivative of a flux outside an equation on the domain",
-                    )
-                    .label(span, "evaluated where there are no nodes")
-                    .help("write the equation `indomain bar`"),
-                );
+                self.report(refused::derivative_outside_domain(span));
                 return self.poison(span);
             }
         };
@@ -159,13 +131,7 @@ impl<'a> Model<'a, '_> {
         };
         if field.flux {
             let name = self.flat.variables[var].name.clone();
-            self.report(
-                Diagnostic::error(
-                    Code::FieldUse,
-                    format!("the flux `{name}` is not read at a point"),
-                )
-                .label(span, "lies between the nodes"),
-            );
+            self.report(refused::flux_at_point(&name, span));
             return self.poison(span);
         }
         let Some(point) = self.point(field.domain, at, scope) else {
@@ -236,11 +202,7 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
     ) -> Option<(VarId, Field)> {
         let ExprKind::Reference(name) = &expr.kind else {
-            self.report(
-                Diagnostic::error(Code::FieldUse, "the derivative of an expression")
-                    .label(expr.span, "not a field by name")
-                    .help("give it a name: `field … q on bar = …;`"),
-            );
+            self.report(refused::derivative_of_expression(expr.span));
             return None;
         };
         let resolved = self.resolve(name, scope)?;
@@ -249,13 +211,7 @@ impl<'a> Model<'a, '_> {
         {
             return Some((var, field));
         }
-        self.report(
-            Diagnostic::error(
-                Code::FieldUse,
-                format!("`{}` is not a field", name.dotted()),
-            )
-            .label(expr.span, "has no derivative in space"),
-        );
+        self.report(refused::derivative_of_no_field(name, expr.span));
         None
     }
 
@@ -284,29 +240,9 @@ impl<'a> Model<'a, '_> {
         }
         let field = found.and_then(|var| Some((var, self.notes(var).field?)));
         if field.is_none() {
-            self.report(
-                Diagnostic::error(
-                    Code::FieldUse,
-                    format!("`{}` is not a field", name.dotted()),
-                )
-                .label(name.span, "only a field can be read at a position"),
-            );
+            self.report(refused::position_of_no_field(name));
         }
         field
-    }
-
-    fn field_needs_place(&mut self, name: &str, span: Span) {
-        let short = name.rsplit('.').next().unwrap_or(name);
-        self.report(
-            Diagnostic::error(
-                Code::FieldUse,
-                format!("the field `{name}` has no single value"),
-            )
-            .label(span, "at which position?")
-            .help(format!(
-                "read it at a position, `{short}.at(xn)`, or write the equation `indomain …`"
-            )),
-        );
     }
 
     pub(super) fn node(&mut self, var: VarId, index: Index, shift: i32) -> ExprId {

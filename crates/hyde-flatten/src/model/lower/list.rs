@@ -4,7 +4,7 @@ use super::subscript::without_elements;
 use crate::dimension::Dim;
 use crate::instance::{Counter, Elementwise, InstanceId, Scope, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::values as refused;
 use hyde_syntax::ast::{Comprehension, Expr, ExprKind, UnitText};
 use hyde_units::NamedUnit;
 
@@ -24,22 +24,13 @@ impl<'a> Model<'a, '_> {
                 if let Some(len) = self.list_length(list, scope)
                     && len != position.of
                 {
-                    self.report(
-                        Diagnostic::error(
-                            Code::BadShape,
-                            format!("{len} values are combined with arrays of {}", position.of),
-                        )
-                        .label(list.span, format!("{len} values")),
-                    );
+                    self.report(refused::lengths_of_list_differ(len, position.of, list.span));
                     return self.poison(list.span);
                 }
                 self.list_item(list, position.at, &without_elements(scope))
             }
             None => {
-                self.report(
-                    Diagnostic::error(Code::BadShape, "expected one value, found a list")
-                        .label(list.span, "a list"),
-                );
+                self.report(refused::list_for_value(list.span));
                 self.poison(list.span)
             }
         }
@@ -56,10 +47,7 @@ impl<'a> Model<'a, '_> {
         let (first, last) = self.bounds(&counted.first, &counted.last, scope)?;
         let len = last - first + 1;
         if len > MOST {
-            self.report(
-                Diagnostic::error(Code::BadShape, format!("a list of {len} elements"))
-                    .label(list.span, format!("at most {MOST}")),
-            );
+            self.report(refused::long_list(len, MOST, list.span));
             return None;
         }
         Some(usize::try_from(len).unwrap_or(0))

@@ -4,9 +4,10 @@ use super::sum_dim;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
+use crate::refusals::values as refused;
 use crate::turns::{Sides, Turns};
 use crate::zero::{self, Zero};
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::{BinaryOp, Expr as Ir, UnaryOp, VariableKind};
 use hyde_syntax::ast::{Binary, Expr, Unary};
 use hyde_units::Exponent;
@@ -145,12 +146,8 @@ impl<'a> Model<'a, '_> {
             && (self.varies(a.id) || self.varies(b.id))
         {
             let sign = if op == BinaryOp::Eq { "==" } else { "<>" };
-            let message = format!("`{sign}` of continuous values: they are hardly ever equal");
-            self.report(
-                Diagnostic::error(Code::WrongType, message)
-                    .label(span, "compares values that change continuously")
-                    .help("compare with `<` or `>`; within a distance, `abs(x - y) < 1e-6`"),
-            );
+
+            self.report(refused::compared_for_equality(sign, span));
         }
         let id = self.flat.exprs.binary(op, a.id, b.id);
         Typed {
@@ -222,10 +219,7 @@ impl<'a> Model<'a, '_> {
             }
         };
         let dim = dim.unwrap_or_else(|| {
-            self.report(
-                Diagnostic::error(Code::UnitMismatch, "a dimension to this power is not exact")
-                    .label(span, "use an exponent such as 1/2 or 2/3"),
-            );
+            self.report(refused::inexact_power(span));
             Dim::Any
         });
         Typed {

@@ -4,8 +4,9 @@ use super::resolve::Resolved;
 use crate::dimension::Dim;
 use crate::instance::{Counter, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::refusals::values as refused;
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::Span;
 use hyde_ir::{Expr as Ir, Id as _, Index, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
 
@@ -73,25 +74,10 @@ impl<'a> Model<'a, '_> {
         let connector = part.class.kind == ClassKind::Connector;
         let mut members = part.members.iter();
         let variable = members.find(|(_, member)| matches!(member, Member::Variable(_)));
-        let (what, connect) = match connector {
-            true => (
-                "connector",
-                format!("connect it, `connect({path}, …);`, or "),
-            ),
-            false => ("component", String::new()),
-        };
-        let diagnostic = Diagnostic::error(
-            Code::WrongType,
-            format!("`{path}` is a {what} ({name}), not a value"),
-        )
-        .label(span, format!("a {what}"));
-        let variable = variable.map(|(variable, _)| format!("{path}.{variable}"));
-        self.report(match variable {
-            Some(variable) => {
-                diagnostic.help(format!("{connect}name one of its variables: `{variable}`"))
-            }
-            None => diagnostic.help(format!("{connect}name a variable of one of its parts")),
-        });
+        let variable = variable.map(|(variable, _)| *variable);
+        let class = (name.as_str(), connector);
+        let diagnostic = refused::part_as_value(&path, span, class, variable);
+        self.report(diagnostic);
     }
 
     /// A variable's value, with the borders of clocked parts checked.
@@ -109,16 +95,7 @@ impl<'a> Model<'a, '_> {
         }
         if scope.setting == Setting::Measure {
             let name = self.flat.variables[var].name.clone();
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    format!("`{name}` changes during the run, but one number is needed"),
-                )
-                .label(span, "expected one number, found a signal")
-                .help(format!(
-                    "reduce it to one number: `last({name})`, `max({name})`, `rms({name})`, …"
-                )),
-            );
+            self.report(refused::signal_for_number(&name, span));
             return self.poison(span);
         }
         if let (Some(field), None) = (self.notes(var).field, index) {
@@ -144,14 +121,7 @@ impl<'a> Model<'a, '_> {
             (
                 VariableKind::Clocked(_),
                 Setting::Equation | Setting::Condition | Setting::Action,
-            ) => self.report(
-                Diagnostic::error(
-                    Code::ClockBorder,
-                    format!("`{name}` belongs to a clocked part"),
-                )
-                .label(span, "read by a continuous equation")
-                .help(format!("hold it between ticks: `hold({name})`")),
-            ),
+            ) => self.report(refused::clocked_in_continuous(&name, span)),
             (
                 VariableKind::Continuous
                 | VariableKind::Discrete
@@ -159,11 +129,7 @@ impl<'a> Model<'a, '_> {
                 | VariableKind::Column(..)
                 | VariableKind::Delayed(_),
                 Setting::Clocked,
-            ) => self.report(
-                Diagnostic::error(Code::ClockBorder, format!("`{name}` is continuous"))
-                    .label(span, "read in a clocked part")
-                    .help(format!("read it at the tick: `sample({name})`")),
-            ),
+            ) => self.report(refused::continuous_in_clocked(&name, span)),
             _ => {}
         }
     }

@@ -6,7 +6,8 @@ use crate::instance::{
     Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Setting, Typed,
 };
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::values as refused;
+use hyde_diag::Span;
 use hyde_ir::{Index, ParamId, VarId};
 use hyde_syntax::ast::{Expr, ExprKind, Reference};
 
@@ -41,16 +42,7 @@ impl<'a> Model<'a, '_> {
             return Some(Resolved::Pi);
         }
         let known: Vec<&str> = values.iter().map(|(name, _)| *name).collect();
-        let name = reference.dotted();
-        self.report(
-            Diagnostic::error(
-                Code::UnknownName,
-                format!("there is no `{name}` in this function"),
-            )
-            .label(reference.span, "not known")
-            .note("a function can use only its inputs and its earlier declarations")
-            .help(format!("known here: {}", crate::model::listed(&known))),
-        );
+        self.report(refused::unknown_in_function(reference, &known));
         None
     }
 
@@ -117,13 +109,7 @@ impl<'a> Model<'a, '_> {
                 [] => None,
                 [subscript] => Some(subscript),
                 [_, second, ..] => {
-                    self.report(
-                        Diagnostic::error(
-                            Code::BadShape,
-                            "arrays have one dimension in this version",
-                        )
-                        .label(second.span, "a second subscript"),
-                    );
+                    self.report(refused::second_subscript(second.span));
                     return None;
                 }
             };
@@ -146,18 +132,12 @@ impl<'a> Model<'a, '_> {
                         .then_some(Resolved::Parameter(param, index));
                 }
                 Member::Domain(_) => {
-                    self.report(
-                        Diagnostic::error(
-                            Code::FieldUse,
-                            format!("`{}` is a domain, not a value", part.name.text),
-                        )
-                        .label(reference.span, "a domain"),
-                    );
+                    self.report(refused::domain_as_value(&part.name.text, reference.span));
                     return None;
                 }
                 Member::Instance(instance) if subscript.is_none() => instance,
                 Member::Instance(_) => {
-                    self.not_an_array(reference);
+                    self.report(refused::not_an_array(reference));
                     return None;
                 }
                 Member::Instances(list) => {
@@ -205,14 +185,11 @@ impl<'a> Model<'a, '_> {
             let (array, rest) = words.split_at(at + 1);
             let array = array.join(".");
             let one: String = rest.iter().map(|word| format!(".{word}")).collect();
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("`{array}` is an array of {} components", list.len()),
-                )
-                .label(reference.span, "which one?")
-                .help(format!("name one: `{array}[1]{one}`")),
-            );
+            self.report(refused::which_component(
+                (&array, &one),
+                list.len(),
+                reference.span,
+            ));
             return None;
         };
         if mentions_counter(subscript, scope) {
@@ -225,13 +202,7 @@ impl<'a> Model<'a, '_> {
             .and_then(|at| list.get(at))
             .copied();
         if found.is_none() {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("there are components 1 to {}", list.len()),
-                )
-                .label(subscript.span, format!("component {number}")),
-            );
+            self.report(refused::no_component(list.len(), (subscript.span, number)));
         }
         found
     }
@@ -258,27 +229,12 @@ impl<'a> Model<'a, '_> {
             }
         };
         if count != position.of {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!(
-                        "{count} components are combined with arrays of {}",
-                        position.of
-                    ),
-                )
-                .label(span, format!("{count} components")),
-            );
+            self.report(refused::numbers_of_components(count, position.of, span));
             return None;
         }
         let found = list.get(start.saturating_add(position.at)).copied();
         if found.is_none() {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("there are components 1 to {}", list.len()),
-                )
-                .label(span, "is out of range"),
-            );
+            self.report(refused::components_out_of_range(list.len(), span));
         }
         found
     }
@@ -289,17 +245,7 @@ impl<'a> Model<'a, '_> {
         reference: &Reference,
     ) -> bool {
         let Some(part) = rest else { return true };
-        self.report(
-            Diagnostic::error(
-                Code::UnknownName,
-                format!(
-                    "`{}` has no `{}`: it is not a component",
-                    reference.dotted(),
-                    part.name.text
-                ),
-            )
-            .label(part.name.span, "a value has no elements"),
-        );
+        self.report(refused::part_of_value(reference, &part.name));
         false
     }
 

@@ -2,7 +2,7 @@
 
 use crate::instance::{Member, Scope};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::values as refused;
 use hyde_syntax::ast::{Argument, Expr, ExprKind, Reference};
 
 impl<'a> Model<'a, '_> {
@@ -83,14 +83,11 @@ impl<'a> Model<'a, '_> {
             let values =
                 values.and_then(|len| self.whole_length(part.subscripts.as_slice(), len, scope));
             if let (Some(components), Some(values)) = (components, values) {
-                self.report(
-                    Diagnostic::error(
-                        Code::BadShape,
-                        format!("{components} components with {values} values each"),
-                    )
-                    .label(reference.span, "arrays in two directions at once")
-                    .help("name the component, or loop over them: `for i in 1:n loop … end for;`"),
-                );
+                self.report(refused::arrays_of_arrays(
+                    components,
+                    values,
+                    reference.span,
+                ));
                 return None;
             }
             if values.is_some() {

@@ -2,7 +2,8 @@
 
 use crate::instance::{Counter, Elementwise, Scope};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::values as refused;
+use hyde_diag::Span;
 use hyde_ir::Index;
 use hyde_syntax::ast::{Binary, Expr, ExprKind, Reference, Unary};
 
@@ -76,7 +77,7 @@ impl<'a> Model<'a, '_> {
             return Some(None);
         };
         let Some(len) = len else {
-            self.not_an_array(reference);
+            self.report(refused::not_an_array(reference));
             return None;
         };
         if let ExprKind::Slice(from, _) = &subscript.kind {
@@ -95,13 +96,11 @@ impl<'a> Model<'a, '_> {
         let inside = usize::try_from(index.offset).is_ok_and(|at| at < len);
         if index.stride == 0 && !inside {
             let last = i64::from(first) + i64::try_from(len).unwrap_or(0) - 1;
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("`{}` has elements {first} to {last}", reference.dotted()),
-                )
-                .label(subscript.span, format!("element {}", written.offset)),
-            );
+            self.report(refused::no_element(
+                reference,
+                (first, last),
+                (subscript.span, written.offset),
+            ));
             return None;
         }
         Some(Some(index))
@@ -123,21 +122,11 @@ impl<'a> Model<'a, '_> {
             }
             (None, Some(len), Some(elements)) => {
                 let expected = elements.len();
-                self.report(
-                    Diagnostic::error(
-                        Code::BadShape,
-                        format!("an array of {len} is combined with arrays of {expected}"),
-                    )
-                    .label(span, format!("has {len} elements")),
-                );
+                self.report(refused::lengths_differ(len, expected, span));
                 None
             }
             (None, Some(len), None) => {
-                self.report(
-                    Diagnostic::error(Code::BadShape, "expected one value, found an array")
-                        .label(span, format!("has {len} elements"))
-                        .help("name an element, `x[1]`, or sum them, `sum(x)`"),
-                );
+                self.report(refused::array_for_value(len, span));
                 None
             }
         }
@@ -154,52 +143,27 @@ impl<'a> Model<'a, '_> {
         let start = self.structural_integer_in(&without_elements(scope), from)? - i64::from(first);
         let count = self.slice_length(slice, scope)?;
         let Some(elements) = scope.elementwise else {
-            self.report(
-                Diagnostic::error(Code::BadShape, "expected one value, found an array")
-                    .label(slice.span, format!("{count} elements"))
-                    .help("name an element, `x[1]`, or sum them, `sum(x[1:2])`"),
-            );
+            self.report(refused::slice_for_value(count, slice.span));
             return None;
         };
         let inside = usize::try_from(start).is_ok_and(|start| start + count <= len);
         if !inside {
             let last = i64::from(first) + i64::try_from(len).unwrap_or(0) - 1;
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("the elements are {first} to {last}"),
-                )
-                .label(slice.span, "is out of range"),
-            );
+            self.report(refused::slice_out_of_range((first, last), slice.span));
             return None;
         }
         if count != elements.len() {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!(
-                        "{count} elements are combined with arrays of {}",
-                        elements.len()
-                    ),
-                )
-                .label(slice.span, format!("has {count} elements")),
-            );
+            self.report(refused::lengths_of_slice_differ(
+                count,
+                elements.len(),
+                slice.span,
+            ));
             return None;
         }
         Some(element_index(
             elements,
             i32::try_from(start).unwrap_or(i32::MAX),
         ))
-    }
-
-    pub(super) fn not_an_array(&mut self, reference: &Reference) {
-        self.report(
-            Diagnostic::error(
-                Code::BadShape,
-                format!("`{}` is not an array", reference.dotted()),
-            )
-            .label(reference.span, "has no elements"),
-        );
     }
 }
 

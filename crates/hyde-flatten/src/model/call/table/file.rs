@@ -4,9 +4,9 @@
 use super::Points;
 use crate::TableFile;
 use crate::dimension::Dim;
-use crate::model::{Model, listed};
-use crate::names::nearest;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::model::Model;
+use crate::refusals::calls as refused;
+use hyde_diag::Span;
 use hyde_syntax::ast::{Expr, ExprKind};
 use hyde_units::NamedUnit;
 
@@ -27,14 +27,7 @@ impl<'a> Model<'a, '_> {
             [_, path] => (path, None, None),
             [_, path, xs, ys] => (path, Some(*xs), Some(*ys)),
             _ => {
-                self.report(
-                    Diagnostic::error(
-                        Code::BadArguments,
-                        format!("`{name}` of a file takes two columns of it, or none"),
-                    )
-                    .label(span, "called here")
-                    .help(format!("write `{name}(x, \"grease.csv\", \"v\", \"F\")`")),
-                );
+                self.report(refused::columns_of_table(name, span));
                 return None;
             }
         };
@@ -46,26 +39,12 @@ impl<'a> Model<'a, '_> {
         let xs = self.column_of(file, written, (xs, 0), path.span)?;
         let ys = self.column_of(file, written, (ys, 1), path.span)?;
         if xs.2.len() < 2 {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("`{written}` has {} row", xs.2.len()),
-                )
-                .label(path.span, "a table has two points at least"),
-            );
+            self.report(refused::one_point(written, xs.2.len(), path.span));
             return None;
         }
         if xs.2.len() > MAX_ROWS {
-            let message = format!(
-                "`{written}` has {} rows: a table has {MAX_ROWS} at most, for each becomes a branch of the equations",
-                xs.2.len()
-            );
-            let thin = xs.2.len().div_ceil(MAX_ROWS);
-            let help = format!(
-                "keep one row of {thin}; what depends on time alone may be a record, which has any number of rows"
-            );
-            let diagnostic = Diagnostic::error(Code::BadShape, message);
-            self.report(diagnostic.label(path.span, "too many rows").help(help));
+            let rows = (xs.2.len(), MAX_ROWS);
+            self.report(refused::too_many_rows(written, rows, path.span));
             return None;
         }
         if let Some(row) = (1..xs.2.len()).find(|&row| xs.2[row - 1] >= xs.2[row]) {
@@ -73,22 +52,9 @@ impl<'a> Model<'a, '_> {
                 let unit = xs.1.as_ref();
                 unit.map_or(xs.2[row], |unit| unit.unit().from_si(xs.2[row]))
             };
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("`{}` of `{written}` does not ascend", xs.0),
-                )
-                .label(
-                    path.span,
-                    format!(
-                        "row {} below the header has {}, the row above it {}",
-                        row + 1,
-                        hyde_units::significant(shown(row), 6),
-                        hyde_units::significant(shown(row - 1), 6)
-                    ),
-                )
-                .help("sort the rows by the places, each once"),
-            );
+            let values = (shown(row), shown(row - 1));
+            let column = (xs.0.as_str(), written.as_str());
+            self.report(refused::rows_descend(column, path.span, row + 1, values));
             return None;
         }
         Some((points(xs), points(ys)))
@@ -105,19 +71,12 @@ impl<'a> Model<'a, '_> {
         let Some(name) = name else {
             let found = file.columns.get(place);
             if found.is_none() {
-                self.report(
-                    Diagnostic::error(Code::NoColumn, format!("`{path}` has one column"))
-                        .label(span, "a table has places and values"),
-                );
+                self.report(refused::single_column(path, span));
             }
             return found;
         };
         let ExprKind::String(word) = &name.kind else {
-            self.report(
-                Diagnostic::error(Code::BadArguments, "a column of a file is named in quotes")
-                    .label(name.span, "not the name of a column")
-                    .help("write `table(x, \"grease.csv\", \"v\", \"F\")`"),
-            );
+            self.report(refused::column_without_quotes(name.span));
             return None;
         };
         let found = file.columns.iter().find(|(known, ..)| known == word);
@@ -127,13 +86,7 @@ impl<'a> Model<'a, '_> {
                 .iter()
                 .map(|(name, ..)| name.as_str())
                 .collect();
-            let diagnostic =
-                Diagnostic::error(Code::NoColumn, format!("`{path}` has no column `{word}`"))
-                    .label(name.span, "not in its header");
-            self.report(match nearest(word, known.iter().copied()) {
-                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                None => diagnostic.help(format!("it has {}", listed(&known))),
-            });
+            self.report(refused::no_column(path, (word, name.span), &known));
         }
         found
     }
