@@ -4,9 +4,10 @@
 //! the rest is an error. Inside a clocked part every record column is held (C4).
 
 use crate::graph::{Bipartite, strongly_connected_components};
+use crate::refusals::clocked as refused;
 use crate::solve::solve_for;
 use crate::system::System;
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::{Diagnostics, Span};
 use hyde_ir::dae::{ClockedAssignment, Dae, Hold, Tick};
 use hyde_ir::flat::ClockedEquation;
 use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, Interpolation, Memo, VarId, VariableKind};
@@ -110,14 +111,10 @@ fn assignments(
             item.equation.rhs,
             Expr::Var(var, index),
         ) else {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::ClockedEquation,
-                    format!("`{}` is not given explicitly", dae.variables[var].name),
-                )
-                .label(item.equation.origin.span, "cannot be solved for it")
-                .help("write `x = …` with the old values as `pre(x)`"),
-            );
+            diagnostics.push(refused::not_explicit(
+                &dae.variables[var].name,
+                item.equation.origin.span,
+            ));
             return None;
         };
         let origin = item.equation.origin.clone();
@@ -149,19 +146,11 @@ fn assignments(
         if component.len() > 1 || reads[node].contains(&node) {
             let names: Vec<String> = component
                 .iter()
-                .map(|&n| format!("`{}`", dae.variables[solved[n].var].name))
+                .map(|&n| dae.variables[solved[n].var].name.clone())
                 .collect();
-            let mut diagnostic = Diagnostic::error(
-                Code::ClockedLoop,
-                format!(
-                    "{} depend on each other in a loop at one tick",
-                    names.join(", ")
-                ),
-            );
-            for &number in &component {
-                diagnostic = diagnostic.label(solved[number].origin.span, "in the circle");
-            }
-            diagnostics.push(diagnostic.help("read one of them from the tick before: `pre(x)`"));
+            let place = |&number: &usize| solved[number].origin.span;
+            let places: Vec<Span> = component.iter().map(place).collect();
+            diagnostics.push(refused::loop_at_tick(&names, &places));
             return None;
         }
         order.push(node);
@@ -186,17 +175,7 @@ fn report_unmatched(
 ) {
     for (item, right) in equations.iter().zip(of_left) {
         if right.is_none() {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::TooManyEquations,
-                    "this equation is redundant at the tick",
-                )
-                .label(
-                    item.equation.origin.span,
-                    "other equations determine all its variables",
-                )
-                .help("remove it"),
-            );
+            diagnostics.push(refused::redundant_at_tick(item.equation.origin.span));
         }
     }
     for &var in unknowns {
@@ -205,26 +184,12 @@ fn report_unmatched(
             continue;
         }
         let variable = &dae.variables[var];
-        let code = if variable.input {
-            Code::UnboundInput
-        } else {
-            Code::TooFewEquations
+        let unset = match variable.input {
+            true => refused::input_unset_at_ticks,
+            false => refused::unset_at_ticks,
         };
         let tick = &dae.ticks[clock].name;
-        diagnostics.push(
-            Diagnostic::error(
-                code,
-                format!(
-                    "no equation determines `{}` at the ticks of `{tick}`",
-                    variable.name
-                ),
-            )
-            .label(variable.origin.span, "declared here")
-            .help(format!(
-                "give it an equation in the clocked part: `{} = …;`",
-                variable.name
-            )),
-        );
+        diagnostics.push(unset(&variable.name, tick, variable.origin.span));
     }
 }
 
@@ -254,15 +219,9 @@ fn order_clocks(dae: &mut Dae, diagnostics: &mut Diagnostics) {
         .collect();
     for component in strongly_connected_components(&reads) {
         if component.len() > 1 {
-            let mut diagnostic = Diagnostic::error(
-                Code::ClockedLoop,
-                "clocked parts read each other at one instant",
-            );
-            for &number in &component {
-                diagnostic =
-                    diagnostic.label(dae.ticks[clocks[number]].origin.span, "in the circle");
-            }
-            diagnostics.push(diagnostic.help("let one of them sample the held output of the other: `sample(hold(…))` is the previous value"));
+            let place = |&number: &usize| dae.ticks[clocks[number]].origin.span;
+            let places: Vec<Span> = component.iter().map(place).collect();
+            diagnostics.push(refused::loop_of_clocks(&places));
         }
         dae.tick_order
             .extend(component.into_iter().map(|number| clocks[number]));

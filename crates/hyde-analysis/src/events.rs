@@ -1,8 +1,9 @@
 //! Exits of modes, `when` clauses and asserts become reactions: a condition over truths, and what is set when it fires.
 
 use crate::layout::alias;
+use crate::refusals::states as refused;
 use crate::system::System;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
+use hyde_diag::{Diagnostics, Origin};
 use hyde_ir::dae::{Alias, Assignment, Dae, Reaction, ReactionKind, Space, Target};
 use hyde_ir::flat::Action;
 use hyde_ir::print::Names;
@@ -100,21 +101,8 @@ fn add(
             }),
             None => {
                 let states = states_behind(dae, var);
-                let names = states.join("`, `");
-                let help = match states.as_slice() {
-                    [] => "it does not depend on any state: an event cannot set it".to_owned(),
-                    [_] => format!("reinitialise `{names}`, from which it is computed"),
-                    _ => format!("reinitialise the states that it is computed from: `{names}`"),
-                };
-                diagnostics.push(
-                    Diagnostic::error(
-                        Code::WrongType,
-                        format!("`{}` is not a state", system.flat.variables[var].name),
-                    )
-                    .label(origin.span, "reinitialised here")
-                    .note("it is computed from other variables")
-                    .help(help),
-                );
+                let name = &system.flat.variables[var].name;
+                diagnostics.push(refused::reinit_of_no_state(name, origin.span, &states));
             }
         }
     }

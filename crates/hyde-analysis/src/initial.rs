@@ -5,8 +5,9 @@
 //! model never do: what is too much is reported.
 
 use crate::graph::{Bipartite, Matching};
+use crate::refusals::states as refused;
 use crate::system::{Cell, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
+use hyde_diag::{Diagnostics, Origin, Span};
 use hyde_ir::dae::{Dae, Firmness, InitialCondition, Space};
 use hyde_ir::{Expr, ExprId, Range, VarId};
 use std::collections::BTreeSet;
@@ -291,25 +292,14 @@ fn too_many(
     free: usize,
     diagnostics: &mut Diagnostics,
 ) {
-    let mut diagnostic = Diagnostic::error(
-        Code::TooManyConditions,
-        format!(
-            "{} for {free} states that are not fixed",
-            crate::matching::plural(equations.len(), "initial equation")
-        ),
-    );
-    for (_, _, origin) in equations {
-        diagnostic = diagnostic.label(origin.span, "an initial equation");
-    }
+    let equations: Vec<Span> = equations.iter().map(|(.., origin)| origin.span).collect();
     let given = conditions.iter().filter(|c| c.firmness == Firmness::Given);
-    for condition in given.take(8) {
-        let name = &dae.unknown_name(condition.position);
-        diagnostic = diagnostic.label(condition.origin.span, format!("`{name}` is fixed here"));
-    }
-    diagnostics
-        .push(diagnostic.help(
-            "remove `fixed = true` from the states that an initial equation is to determine",
-        ));
+    let fixed = given.take(8).map(|condition| {
+        let name = dae.unknown_name(condition.position);
+        (name, condition.origin.span)
+    });
+    let fixed: Vec<(String, Span)> = fixed.collect();
+    diagnostics.push(refused::too_many_conditions(&equations, free, &fixed));
 }
 
 /// Joined states with different fixed start values (I1).
@@ -348,22 +338,12 @@ fn refuse_conflicts(dae: &Dae, system: &mut System, diagnostics: &mut Diagnostic
                 let component = system.component(&variable.origin);
                 component.map_or(variable.origin.span, |(_, span)| span)
             };
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::ConflictingStarts,
-                    format!(
-                        "`{}` and `{}` are rigidly joined and have different start values",
-                        a.name, b.name
-                    ),
-                )
-                .label(place(a), format!("`{}` starts at {}", a.name, show(value)))
-                .label(place(b), format!("`{}` starts at {}", b.name, show(second)))
-                .note(format!(
-                    "both are `{}`",
-                    dae.variables[cell.0].element_name(cell.1)
-                ))
-                .help("give both the same start value, or remove `fixed` from one"),
-            );
+            let state = dae.variables[cell.0].element_name(cell.1);
+            diagnostics.push(refused::different_starts(
+                (&a.name, &show(value), place(a)),
+                (&b.name, &show(second), place(b)),
+                &state,
+            ));
         }
     }
 }

@@ -40,6 +40,7 @@ mod pins;
 mod prescribed;
 mod reduce;
 mod redundant;
+mod refusals;
 mod regularity;
 mod relations;
 mod segments;

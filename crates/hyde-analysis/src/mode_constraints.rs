@@ -2,9 +2,10 @@
 //!
 //! `phi1 = phi2` in one mode, both angles states, determines nothing that is unknown there. `w1 = 0` does: it is a pin.
 
+use crate::refusals::states as refused;
 use crate::segments::Segment;
 use crate::system::{Branch, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::Diagnostics;
 use hyde_ir::Expr;
 
 /// Reports every equation of a mode that relates states alone; whether there was one.
@@ -29,28 +30,9 @@ pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Di
                 .modes
                 .get(mode)
                 .map_or("", |mode| mode.name.as_str());
-            let list: Vec<String> = states.iter().map(|state| format!("`{state}`")).collect();
-            let component = system.component(&branch.origin);
-            let diagnostic = Diagnostic::error(
-                Code::Constrained,
-                format!(
-                    "in the mode `{name}` {} are constrained to each other",
-                    list.join(" and ")
-                ),
-            )
-            .label(
-                branch.origin.span,
-                "this equation determines one from the others, but only in this mode",
-            );
-            let diagnostic = match component {
-                Some((part, span)) => diagnostic.label(span, format!("in `{part}`")),
-                None => diagnostic,
-            };
-            diagnostics.push(
-                diagnostic
-                    .note("Hyde chooses the states for all modes together; a mode may only fix a state to a number")
-                    .help("replace the mode by a stiff spring and a damper, or make the relative motion a state and fix that"),
-            );
+            let part = system.component(&branch.origin);
+            let equation = branch.origin.span;
+            diagnostics.push(refused::constrained_in_mode(name, &states, equation, part));
         }
     }
     found

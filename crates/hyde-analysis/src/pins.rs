@@ -14,10 +14,11 @@ use crate::alias::signed_cell;
 use crate::cells::Cells;
 use crate::explicit::Order;
 use crate::matching::{Matched, Node};
+use crate::refusals::{place_of, states as refused};
 use crate::segments::Segment;
 use crate::solve::solve_for;
 use crate::system::{Branch, Cell, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use hyde_diag::{Diagnostic, Diagnostics, MadeBy};
 use hyde_ir::dae::{Dae, Pin};
 use hyde_ir::{AutomatonId, Expr, ExprId, VarId, VariableKind};
 pub(crate) use inlined::Values;
@@ -174,22 +175,14 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
                         &system.flat.automata[slot.automaton].name,
                     );
                     let state = dae.variables[cell.0].element_name(cell.1);
-                    let mut diagnostic = Diagnostic::error(
-                        Code::TwoPins,
-                        format!("`{a}` and `{b}` both fix `{state}`"),
-                    );
-                    for (name, origin) in [(b, &branch.origin), (a, origin)] {
-                        let declared = system
-                            .component(origin)
-                            .map_or(origin.span, |(_, span)| span);
-                        diagnostic = diagnostic.label(declared, format!("`{name}` fixes it"));
-                    }
-                    diagnostics.push(
-                        diagnostic
-                            .label(branch.origin.span, "by this equation of its mode")
-                            .note("two set-valued frictions on one body, or on rigidly joined bodies, have no unique distribution of the force")
-                            .help("make one an effect of the other, or put a spring between them"),
-                    );
+                    let declared = |origin| {
+                        let (part, here) = place_of(system, origin);
+                        part.unwrap_or(here)
+                    };
+                    let second = (b.as_str(), declared(&branch.origin));
+                    let first = (a.as_str(), declared(origin));
+                    let equation = branch.origin.span;
+                    diagnostics.push(refused::two_pins(&state, second, first, equation));
                 }
                 None => drop(seen.insert(cell, (slot.automaton, branch.origin.clone()))),
             }
@@ -274,15 +267,5 @@ fn no_force(
     let force = dae.variables[block.var].element_name(block.first);
     let name = &system.flat.automata[automaton].modes[mode].name;
     let origin = &system.flat.automata[automaton].modes[mode].origin;
-    Diagnostic::error(
-        Code::BadPin,
-        format!("the mode `{name}` fixes `{state}`, but no force holds it"),
-    )
-    .label(
-        origin.span,
-        format!("`{force}` is free in this mode and does not act on `{state}`"),
-    )
-    .help(
-        "let the block determine the force in its other modes, and connect it to the body it holds",
-    )
+    refused::no_force(name, &state, (&force, origin.span))
 }

@@ -9,10 +9,11 @@
 
 use crate::alias::signed_cell;
 use crate::pins::Values;
+use crate::refusals::states as refused;
 use crate::regularity::noun;
 use crate::segments;
 use crate::system::{Branch, Cell, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::{Diagnostic, Diagnostics};
 use hyde_ir::flat::{Action, Transition};
 use hyde_ir::{BinaryOp, Expr, ExprId, Memo, UnaryOp};
 
@@ -101,21 +102,6 @@ fn told(system: &System, slot: usize, mode: usize) -> Diagnostic {
     let automaton = &system.flat.automata[slot.automaton];
     let mode = &automaton.modes[mode].name;
     let branch = &slot.branches[0];
-    let diagnostic = Diagnostic::warning(
-        Code::BadPin,
-        format!(
-            "the mode `{mode}` of `{}` cannot hold a motion that is prescribed",
-            automaton.name
-        ),
-    );
-    let diagnostic = match system.component(&branch.origin) {
-        Some((part, span)) => {
-            diagnostic.label(span, format!("`{part}` acts on a prescribed motion"))
-        }
-        None => diagnostic,
-    };
-    diagnostic
-        .label(automaton.origin.span, format!("`{mode}` is skipped while the motion is at rest"))
-        .note("at rest its force is not determined by the prescribed motion: Hyde uses the force of the first mode that gives one")
-        .help("to see it stick, drive the body by a force, or put a `SpringDamper` between the drive and the friction")
+    let automaton = (automaton.name.as_str(), automaton.origin.span);
+    refused::prescribed(automaton, mode, system.component(&branch.origin))
 }

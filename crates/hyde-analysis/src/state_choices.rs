@@ -1,8 +1,9 @@
 //! What authors said of variables as states (`state = always`), held against what became of them.
 
 use crate::derivatives::fixed_by_modes;
+use crate::refusals::{place_of, states as refused};
 use crate::system::{Cell, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::{Diagnostic, Diagnostics, Severity, Span};
 use hyde_ir::dae::{Alias, Dae, Space};
 use hyde_ir::{Expr, Range, StateChoice, VarId};
 
@@ -87,76 +88,64 @@ fn too_many(dae: &Dae, group: usize, diagnostics: &mut Diagnostics) {
         if list.len() <= most {
             continue;
         }
-        let names: Vec<String> = list
-            .iter()
-            .map(|&var| format!("`{}`", dae.variables[var].name))
-            .collect();
+        let chosen = list.iter().map(|&var| {
+            let variable = &dae.variables[var];
+            (variable.name.clone(), variable.origin.span)
+        });
+        let chosen: Vec<(String, Span)> = chosen.collect();
         let word = dae.variables[list[0]].state.word();
-        let mut diagnostic = Diagnostic::error(
-            Code::StateChoice,
-            format!(
-                "{} cannot all {what}: {} tie{} {all} variables",
-                names.join(", "),
-                crate::matching::plural(constraints, "constraint"),
-                if constraints == 1 { "s" } else { "" },
-            ),
-        );
-        for &var in &list {
-            let text = format!("`state = {word}`");
-            diagnostic = diagnostic.label(dae.variables[var].origin.span, text);
-        }
-        for origin in dae.choice(selection).constraints {
-            diagnostic = diagnostic.label(origin.span, "a constraint between them");
-        }
-        diagnostics.push(diagnostic.help(format!(
-            "at most {states} of these variables can be states; write `{word}` for at most {most}"
-        )));
+        let counts = (constraints, all, most);
+        let places = dae.choice(selection).constraints;
+        diagnostics.push(refused::too_many_chosen(
+            &chosen,
+            (what, word),
+            counts,
+            &places,
+        ));
     }
 }
 
 fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
     let variable = &dae.variables[var];
-    let name = &variable.name;
-    let make = match variable.state {
-        StateChoice::Always | StateChoice::Never => Diagnostic::error,
-        StateChoice::Prefer | StateChoice::Avoid | StateChoice::Open => Diagnostic::warning,
+    let name = (variable.name.as_str(), variable.state.word());
+    let place = place_of(system, &variable.origin);
+    let mut diagnostic = match wanted {
+        true => refused::cannot_be_state(name, place, &no_state(dae, system, var)),
+        false => refused::must_be_state(name, place),
     };
-    let message = match wanted {
-        true => format!("`{name}` cannot be a state"),
-        false => format!("`{name}` must be a state: there is no alternative"),
+    diagnostic.severity = match variable.state {
+        StateChoice::Always | StateChoice::Never => Severity::Error,
+        StateChoice::Prefer | StateChoice::Avoid | StateChoice::Open => Severity::Warning,
     };
-    let place = system.component(&variable.origin);
-    let said = format!("`state = {}`", variable.state.word());
-    let mut diagnostic = make(Code::StateChoice, message);
-    diagnostic = match place {
-        Some((_, span)) => diagnostic
-            .label(span, said)
-            .label(variable.origin.span, "declared here"),
-        None => diagnostic.label(variable.origin.span, said),
-    };
-    if !wanted {
-        return diagnostic
-            .note("no constraint determines it from other states, so it has to be integrated")
-            .help(format!("remove `{}`", variable.state.word()));
-    }
+    diagnostic
+}
+
+/// Why a variable is not a state.
+pub(crate) enum NoState {
+    /// Its value is constant.
+    Constant,
+    /// Nothing has its derivative.
+    NotDifferentiated,
+    /// This equation determines it from variables of which modes fix these.
+    OthersAreFixed(Span, Vec<String>),
+    /// This equation determines it from others that are chosen too.
+    OthersAreChosen(Span),
+    /// This equation determines it from others.
+    Follows(Span),
+}
+
+fn no_state(dae: &Dae, system: &System, var: VarId) -> NoState {
     let mut root = (var, 0);
     while let Some(Alias::Of { var, element, .. }) = system.aliases.get(&root) {
         root = (*var, *element);
     }
     if let Some(Alias::Value(_)) = system.aliases.get(&root) {
-        return diagnostic
-            .note("its value is known and constant")
-            .help("remove the choice, or free it");
+        return NoState::Constant;
     }
     let Some(dependent) = dae.dependent.iter().find(|d| (d.var, d.element) == root) else {
-        return diagnostic
-            .note("no equation has its derivative, and no constraint between states could be solved for another one")
-            .help("choose a variable that is differentiated, or the derivative of one");
+        return NoState::NotDifferentiated;
     };
-    diagnostic = diagnostic.label(
-        dependent.origin.span,
-        "this equation determines it from other states",
-    );
+    let equation = dependent.origin.span;
     let others = given_by(system, root);
     let fixed = fixed_by_modes(system);
     let held: Vec<String> = others
@@ -164,25 +153,14 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
         .filter(|cell| fixed.contains(cell))
         .map(|&cell| format!("`{}`", system.cell_name(cell)))
         .collect();
-    let word = variable.state.word();
-    let also_chosen = |&(var, _): &Cell| dae.variables[var].state >= StateChoice::Prefer;
     if !held.is_empty() {
-        return diagnostic
-            .note(format!(
-                "modes fix {}, as a sticking friction does: a variable that a mode fixes has to be a state",
-                crate::regularity::and(&held)
-            ))
-            .help(format!("remove `state = {word}`"));
+        return NoState::OthersAreFixed(equation, held);
     }
-    diagnostic.help(match others.iter().any(also_chosen) {
-        true => "write `prefer` or `always` only for it among the variables of this constraint"
-            .to_owned(),
-        false => {
-            format!(
-                "remove `state = {word}`, or write `avoid` for another variable of this constraint"
-            )
-        }
-    })
+    let also_chosen = |&(var, _): &Cell| dae.variables[var].state >= StateChoice::Prefer;
+    match others.iter().any(also_chosen) {
+        true => NoState::OthersAreChosen(equation),
+        false => NoState::Follows(equation),
+    }
 }
 
 /// The variables in the equation that gives a variable.

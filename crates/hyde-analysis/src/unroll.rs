@@ -1,7 +1,8 @@
 //! Array equations that determine no whole array are unrolled into scalar ones, up to 64 elements, with a note (F3).
 
+use crate::refusals::unmatched as refused;
 use crate::system::{Equation, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::Diagnostics;
 use hyde_ir::{Expr, ExprId, Range, VarId};
 
 /// Arrays larger than this are not unrolled.
@@ -20,25 +21,14 @@ pub(crate) fn unroll(
                 .equations
                 .iter()
                 .find(|equation| mentions(system, equation, &[array]));
-            let mut diagnostic = Diagnostic::error(
-                Code::ArrayEquation,
-                format!(
-                    "the equations of `{}` do not determine it as a whole",
-                    variable.name
-                ),
-            )
-            .label(
-                variable.origin.span,
-                format!("an array of {} elements", variable.size()),
-            );
-            if let Some(equation) = defining {
-                diagnostic = diagnostic.label(equation.origin.span, "reads it");
-            }
-            diagnostics.push(
-                diagnostic
-                    .note(format!("up to {MAX_ELEMENTS} elements would be unrolled one by one"))
-                    .help("write one equation for each run of elements: `for i in 2:n-1 loop der(x[i]) = …; end for;` and one for each end"),
-            );
+            let declared = (variable.origin.span, variable.size());
+            let reading = defining.map(|equation| equation.origin.span);
+            diagnostics.push(refused::array_not_whole(
+                &variable.name,
+                declared,
+                MAX_ELEMENTS,
+                reading,
+            ));
             return None;
         }
         system.notes.push(format!(

@@ -55,6 +55,9 @@ macro_rules! diagnostics {
         }
         $crate::diagnostics!(@parts $made; $($rest)*);
     };
+    (@parts $made:ident; match ($first:expr, $($value:expr),+) { $($arm:tt)* } $($rest:tt)*) => {
+        $crate::diagnostics!(@parts $made; match (($first, $($value),+)) { $($arm)* } $($rest)*);
+    };
     (@parts $made:ident; if let $pattern:pat = $value:ident { $($part:tt)* } $($rest:tt)*) => {
         if let $pattern = $value {
             $crate::diagnostics!(@parts $made; $($part)*);

@@ -1,9 +1,9 @@
 //! Loops of rigid parts that are closed once more than they can be, in the words of the model.
 
-use super::words::and;
 use crate::matching::{Node, origin, sides};
+use crate::refusals::conflicts as refused;
 use crate::system::System;
-use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
+use hyde_diag::{Diagnostic, MadeBy, Origin, Span};
 use hyde_ir::Expr;
 
 /// Constraints of which each follows from the others wherever they hold.
@@ -25,26 +25,7 @@ pub(crate) fn held_once_more(system: &System, constraints: Vec<Node>) -> Diagnos
         }
     }
     parts.sort_by_key(|(_, span)| span.start);
-    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
-    let who = match names.as_slice() {
-        [] | [_] => "constraints".to_owned(),
-        several => and(several),
-    };
-    let message = format!("{who} constrain each other redundantly");
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
-    for span in own.into_iter().take(4) {
-        diagnostic = diagnostic.label(span, "a constraint among them");
-    }
-    for (number, (part, span)) in parts.iter().take(8).enumerate() {
-        let text = match number {
-            0 => "one of the rigid parts that close a loop".to_owned(),
-            _ => format!("`{part}` is another"),
-        };
-        diagnostic = diagnostic.label(*span, text);
-    }
-    diagnostic
-        .note("with these dimensions the loop can move, but one of its parts is redundant: the distribution of the force is not determined")
-        .help("remove one, or replace one strut and its joints by a `SpringDamper`")
+    refused::closed_once_more(&own, &parts)
 }
 
 /// Who has a part in an equation: itself, its variables, and the parameters that are its dimensions.

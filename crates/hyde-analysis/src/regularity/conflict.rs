@@ -3,8 +3,9 @@
 use super::pencil::Pencil;
 use super::words::{Conflict, floating, generic, held_twice, loose, parameter};
 use crate::matching::{self, Node, missing_boundary, sides, unbound_input};
+use crate::refusals::{place_of, unmatched as refused};
 use crate::system::System;
-use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
 use hyde_ir::{Expr, VarId};
 use std::collections::BTreeSet;
 
@@ -87,7 +88,7 @@ fn missing(system: &System, unknowns: &[VarId]) -> Diagnostic {
         )
     });
     let Some(likely) = likely else {
-        return Diagnostic::error(Code::TooFewEquations, "an equation is missing");
+        return refused::missing_equation();
     };
     too_few(system, likely, unknowns)
 }
@@ -95,44 +96,26 @@ fn missing(system: &System, unknowns: &[VarId]) -> Diagnostic {
 fn too_few(system: &System, likely: VarId, unknowns: &[VarId]) -> Diagnostic {
     let variable = &system.flat.variables[likely];
     let short = matching::short(&variable.name);
-    let mut diagnostic = Diagnostic::error(
-        Code::TooFewEquations,
-        format!("no equation determines `{}`", variable.name),
-    );
-    diagnostic = match system.component(&variable.origin) {
-        Some((_, span)) => diagnostic
-            .label(span, "in this component")
-            .label(variable.origin.span, "declared here"),
-        None => diagnostic.label(variable.origin.span, "declared here"),
-    };
+    let mut containing: Vec<Span> = Vec::new();
     for node in mentioning(system, likely).into_iter().take(2) {
         let origin = matching::origin(system, node);
         if origin.made_by != MadeBy::Unconnected {
-            diagnostic = diagnostic.label(
-                origin.span,
-                "contains it, but is needed for another unknown",
-            );
+            containing.push(origin.span);
         }
     }
     let others: Vec<String> = unknowns
         .iter()
         .filter(|&&var| var != likely)
         .take(5)
-        .map(|&var| format!("`{}`", system.flat.variables[var].name))
+        .map(|&var| system.flat.variables[var].name.clone())
         .collect();
-    if !others.is_empty() {
-        let more = if unknowns.len() > 6 { ", …" } else { "" };
-        diagnostic = diagnostic.note(format!(
-            "with it {}{more} {} open",
-            others.join(", "),
-            if others.len() == 1 { "is" } else { "are" }
-        ));
-    }
-    diagnostic.help(if variable.flow {
-        "connect its connector, or give the force a law".to_owned()
-    } else {
-        format!("add an equation for it: `{short} = …;`")
-    })
+    let repair = match variable.flow {
+        true => "connect its connector, or give the force a law".to_owned(),
+        false => format!("add an equation for it: `{short} = …;`"),
+    };
+    let place = place_of(system, &variable.origin);
+    let open = (others.as_slice(), unknowns.len() > 6);
+    refused::likely_undetermined(&variable.name, place, &containing, open, &repair)
 }
 
 /// The equations that name a variable.

@@ -1,8 +1,9 @@
 //! What a conflict of equations means for a drive: held twice, floating, connected to nothing, a parameter as unknown.
 
-use crate::matching::{self, Node, plural, sides};
+use crate::matching::{self, Node, sides};
+use crate::refusals::conflicts as refused;
 use crate::system::System;
-use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
+use hyde_diag::{Diagnostic, MadeBy, Origin, Span};
 use hyde_ir::{Expr, VarId};
 use hyde_units::Dimension;
 
@@ -90,18 +91,11 @@ pub(super) fn parameter(system: &System, conflict: &Conflict) -> Option<Diagnost
                 continue;
             }
             let parameter = &system.flat.parameters[param];
-            let name = &parameter.name;
-            return Some(
-                Diagnostic::error(
-                    Code::TooManyEquations,
-                    format!("`{name}` is a parameter: this equation cannot determine it"),
-                )
-                .label(origin.span, "other equations determine all its variables")
-                .label(parameter.origin.span, "its value is given here")
-                .help(format!(
-                    "if the equation should determine `{name}`, declare it without `parameter` and without a value"
-                )),
-            );
+            return Some(refused::determines_parameter(
+                &parameter.name,
+                origin.span,
+                parameter.origin.span,
+            ));
         }
     }
     None
@@ -118,28 +112,14 @@ pub(super) fn loose(system: &System, conflict: &Conflict) -> Option<Diagnostic> 
     }
     let list: Vec<String> = ends
         .iter()
-        .map(|(_, origin)| format!("`{}`", origin.instance))
+        .map(|(_, origin)| origin.instance.as_str().to_owned())
         .collect();
-    let is = if list.len() == 1 { "is" } else { "are" };
     let open = conflict.open.iter().copied();
     let open = open
         .map(|var| &system.flat.variables[var])
         .find(|variable| !variable.flow);
-    let mut diagnostic = Diagnostic::error(
-        Code::TooManyEquations,
-        format!("{} {is} connected to nothing", list.join(" and ")),
-    )
-    .label(*span, format!("`{part}` is not connected at this end"));
-    if let Some(variable) = open {
-        diagnostic = diagnostic.note(format!(
-            "the flow at an unconnected connector is 0, so no equation determines `{}`",
-            variable.name
-        ));
-    }
-    Some(diagnostic.help(format!(
-        "connect {}, or remove `{part}`",
-        if list.len() == 1 { "it" } else { "one of them" }
-    )))
+    let open = open.map(|variable| variable.name.as_str());
+    Some(refused::loose((part, *span), &list, open))
 }
 
 /// Parts that hang on nothing: their flows sum to zero whatever the potentials are.
@@ -164,31 +144,7 @@ pub(super) fn floating(system: &System, conflict: &Conflict) -> Option<Diagnosti
         }
     }
     parts.sort_by_key(|(_, span)| span.start);
-    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
-    let mut diagnostic = Diagnostic::error(
-        Code::TooFewEquations,
-        format!("no equation fixes the {what} of {}", and(&names)),
-    );
-    for (number, (part, span)) in parts.iter().take(4).enumerate() {
-        let text = match number {
-            0 => format!("the {what} of `{part}` is defined only relative to the others"),
-            _ => format!("and that of `{part}`"),
-        };
-        diagnostic = diagnostic.label(*span, text);
-    }
-    let repair = match what {
-        "voltage" => "connect a `Ground` to one node of the circuit".to_owned(),
-        "angle" | "place" => {
-            "connect one of them to a body with mass or to a `Fixed`; springs alone do not define a position"
-                .to_owned()
-        }
-        _ => format!("connect a component that defines its {what}"),
-    };
-    Some(
-        diagnostic
-            .note("their flows already sum to 0 in each of these connections")
-            .help(repair),
-    )
+    Some(refused::floating(what, &parts))
 }
 
 /// Several parts that fix the same motion, voltage or flow.
@@ -203,7 +159,6 @@ pub(super) fn held_twice(system: &System, conflict: &Conflict) -> Option<Diagnos
     let &var = joined.first()?;
     let variable = &system.flat.variables[var];
     let what = noun(variable.quantity.dimension);
-    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
     // The body that is held: what else is in the connection.
     let others = joined_to(system, connection, var).into_iter();
     let body = others
@@ -213,48 +168,31 @@ pub(super) fn held_twice(system: &System, conflict: &Conflict) -> Option<Diagnos
         Some((body, _)) => format!("the {what} of `{body}`"),
         None => format!("the {what} at `{}`", connector(&variable.name)),
     };
-    let fix = match names.len() {
-        2 => format!("{} both fix {place}", and(&names)),
-        _ => format!("{} fix {place} once too often", and(&names)),
-    };
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, fix);
-    for (number, (part, span)) in parts.iter().take(6).enumerate() {
-        let text = match number {
-            0 => "one part that fixes it".to_owned(),
-            _ => format!("`{part}` fixes it too"),
-        };
-        diagnostic = diagnostic.label(*span, text);
-    }
-    diagnostic = diagnostic.label(connection.span, "they are joined here");
+    // Each place is shown once, and no more than can be read.
+    let mut places: Vec<Span> = parts.iter().take(6).map(|(_, span)| *span).collect();
+    places.push(connection.span);
+    let mut equations: Vec<Origin> = Vec::new();
     for &node in &conflict.equations {
         let origin = matching::origin(system, node);
-        if says_something(&origin) && origin.made_by == MadeBy::Source {
-            let text = format!("an equation of `{}`", origin.instance);
-            let known = diagnostic.labels.iter().any(|l| l.span == origin.span);
-            if !known && diagnostic.labels.len() < 8 {
-                diagnostic = diagnostic.label(origin.span, text);
-            }
+        let says = says_something(&origin) && origin.made_by == MadeBy::Source;
+        if says && !places.contains(&origin.span) && places.len() < 8 {
+            places.push(origin.span);
+            equations.push(origin);
         }
     }
     let open = conflict.open.iter().copied();
-    if let Some(open) = open
+    let open = open
         .map(|var| &system.flat.variables[var])
-        .find(|variable| variable.flow)
-    {
-        diagnostic = diagnostic.note(format!(
-            "the distribution of the {} at `{}` is not determined",
-            noun(open.quantity.dimension),
-            connector(&open.name)
-        ));
-    }
-    let repair = match what {
-        "voltage" => "remove one, or put a resistance between them",
-        "current" => "remove one, or give the current at the node another path",
-        "temperature" => "remove one, or put a thermal resistance between them",
-        "angle" | "place" | "speed" => "remove one, or put a spring between them",
-        _ => "remove one of them",
-    };
-    Some(diagnostic.help(repair))
+        .find(|variable| variable.flow);
+    let open = open.map(|open| (noun(open.quantity.dimension), connector(&open.name)));
+    let joined = connection.span;
+    Some(refused::held_twice(
+        (what, &place),
+        parts,
+        joined,
+        &equations,
+        open,
+    ))
 }
 
 /// Equations that depend on each other, as they are.
@@ -264,81 +202,38 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
         .iter()
         .filter(|&&var| !system.flat.variables[var].flow || unknowns.len() < 4)
         .take(6)
-        .map(|&var| format!("`{}`", system.flat.variables[var].name))
+        .map(|&var| system.flat.variables[var].name.clone())
         .collect();
-    let more = if unknowns.len() > names.len() {
-        ", …"
-    } else {
-        ""
-    };
-    let count = conflict.equations.len();
-    let message = match (count, unknowns.len()) {
-        (1, 0) => "this equation determines no variable".to_owned(),
-        (_, unknown) if count > unknown => format!(
-            "{} for {}: {}{more}",
-            plural(count, "equation"),
-            plural(unknown, "unknown"),
-            names.join(", ")
-        ),
-        _ => format!(
-            "one of the {count} equations of {}{more} is redundant",
-            names.join(", ")
-        ),
-    };
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
-    // The model's own lines first, then the components that have the rest.
-    for origin in conflict.own(system).iter().take(4) {
-        let text = match diagnostic.labels.len() {
-            0 => "one of these is redundant",
-            _ => "one of them",
-        };
-        diagnostic = diagnostic.label(origin.span, text);
-    }
-    for (part, span) in conflict.parts.iter().take(4) {
-        diagnostic = diagnostic.label(*span, format!("the equations of `{part}` are among them"));
-    }
     let mut joined: Vec<Span> = Vec::new();
     for (_, origin) in conflict.of(system, MadeBy::Connection) {
         if !joined.contains(&origin.span) && joined.len() < 3 {
-            diagnostic = diagnostic.label(origin.span, "this connection is among them");
             joined.push(origin.span);
         }
     }
-    for (node, origin) in conflict.of(system, MadeBy::Unconnected) {
+    let unconnected = conflict.of(system, MadeBy::Unconnected).into_iter();
+    let ends = unconnected.map(|(node, origin)| {
         let what = named(system, &[node]).first().map_or("flow", |&var| {
             noun(system.flat.variables[var].quantity.dimension)
         });
         let span = system
             .component(&origin)
             .map_or(origin.span, |(_, span)| span);
-        let text = format!(
-            "`{}` is not connected: its {what} is already 0",
-            origin.instance
-        );
-        diagnostic = diagnostic.label(span, text);
-    }
-    let open: Vec<String> = conflict
-        .open
-        .iter()
-        .take(4)
-        .map(|&var| format!("`{}`", system.flat.variables[var].name))
+        (origin.instance.as_str().to_owned(), what, span)
+    });
+    let ends: Vec<_> = ends.collect();
+    let open = conflict.open.iter();
+    let open: Vec<String> = open
+        .map(|&var| system.flat.variables[var].name.clone())
         .collect();
-    if !open.is_empty() {
-        let more = if conflict.open.len() > 4 { ", …" } else { "" };
-        diagnostic = diagnostic.note(format!("no equation determines {}{more}", open.join(", ")));
-    }
-    if let Some(name) = set_for_all_times(system, conflict) {
-        return diagnostic.help(format!(
-            "remove one of them; the declaration of `{name}` holds at every time: write `{name}(start = …)` where only its start is meant"
-        ));
-    }
-    diagnostic.help(match (conflict.parts.is_empty(), open.is_empty()) {
-        (true, true) => "remove one of them",
-        (true, false) => "remove one of them, or rewrite it so that it determines the open unknown",
-        (false, _) => {
-            "remove one of them, or put a spring between the parts that both fix a motion"
-        }
-    })
+    refused::conflicting(
+        (conflict.equations.len(), unknowns.len(), &names),
+        &conflict.own(system),
+        &conflict.parts,
+        &joined,
+        &ends,
+        &open,
+        set_for_all_times(system, conflict).as_deref(),
+    )
 }
 
 /// A variable with a derivative in these equations, to which its declaration gives a value that reads no other one.
@@ -448,36 +343,21 @@ pub(super) fn jammed(system: &System, conflict: &Conflict, var: VarId) -> Diagno
     let what = noun(variable.quantity.dimension);
     let body = system.component(&variable.origin);
     let of_body = |part: &&(String, Span)| body.as_ref() != Some(*part);
-    let parts: Vec<&(String, Span)> = conflict.parts.iter().filter(of_body).collect();
-    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let parts: Vec<(String, Span)> = conflict.parts.iter().filter(of_body).cloned().collect();
     let place = body.as_ref().map_or_else(
         || format!("`{}`", variable.name),
         |(body, _)| format!("the {what} of `{body}`"),
     );
-    let both = if names.len() == 2 { "both fix" } else { "fix" };
-    let mut diagnostic = Diagnostic::error(
-        Code::Jammed,
-        format!(
-            "{} {both} {place} in contradictory ways: nothing can move",
-            and(&names)
-        ),
-    );
-    for (number, (part, span)) in parts.iter().take(6).enumerate() {
-        let text = match number {
-            0 => "one rigid part".to_owned(),
-            _ => format!("`{part}` is rigid too, with another ratio"),
-        };
-        diagnostic = diagnostic.label(*span, text);
-    }
+    let mut places: Vec<Span> = parts.iter().take(6).map(|(_, span)| *span).collect();
+    let mut equations: Vec<Span> = Vec::new();
     for (_, origin) in conflict.of(system, MadeBy::Source) {
         let of_part = system
             .component(&origin)
-            .is_some_and(|part| parts.contains(&&part));
-        if of_part && diagnostic.labels.iter().all(|l| l.span != origin.span) {
-            diagnostic = diagnostic.label(origin.span, "holds its ends in one ratio");
+            .is_some_and(|part| parts.contains(&part));
+        if of_part && !places.contains(&origin.span) {
+            places.push(origin.span);
+            equations.push(origin.span);
         }
     }
-    diagnostic
-        .note(format!("together they force `{}` to be 0", variable.name))
-        .help("remove one, give it the ratio of the others, or put a spring between them")
+    refused::jammed(&place, &variable.name, &parts, &equations)
 }

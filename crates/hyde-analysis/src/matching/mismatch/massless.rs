@@ -2,9 +2,9 @@
 //! two of them one behind the other say the same force twice, while what is between them moves as it likes.
 
 use super::super::{Node, origin, sides};
-use crate::regularity::and;
+use crate::refusals::unmatched as refused;
 use crate::system::System;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use hyde_diag::{Diagnostic, MadeBy, Span};
 use hyde_units::{Agreement, Dimension};
 
 /// What two or more parts say twice of one force, where a mode of one of them fixes a motion.
@@ -32,31 +32,7 @@ pub(super) fn between(system: &System, nodes: &[Node], lefts: &[usize]) -> Optio
     }
     parts.sort_by_key(|(_, span)| span.start);
     let body = body(system, nodes())?;
-    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
-    let (message, repair) = match names.as_slice() {
-        [] => return None,
-        [only] => (
-            format!("on one side of {only} no part has inertia"),
-            format!("put {body} between {only} and what it is connected to there"),
-        ),
-        several => (
-            format!("the part between {} has no inertia", and(several)),
-            format!("put {body} between them"),
-        ),
-    };
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
-    for (number, (part, span)) in parts.iter().take(6).enumerate() {
-        let text = match number {
-            0 => "determines a force in some mode, but no motion".to_owned(),
-            _ => format!("`{part}` determines the same force"),
-        };
-        diagnostic = diagnostic.label(*span, text);
-    }
-    Some(
-        diagnostic
-            .note("while it slips or is open, no equation determines the motion of the adjacent part without inertia")
-            .help(repair),
-    )
+    (!parts.is_empty()).then(|| refused::no_inertia(&parts, body))
 }
 
 /// The body that is missing where there is a torque, else where there is a force.
