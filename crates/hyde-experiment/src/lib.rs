@@ -26,6 +26,7 @@ mod modes;
 mod pencil;
 mod poles;
 mod record;
+mod refusals;
 mod rows;
 mod run;
 mod sampled;

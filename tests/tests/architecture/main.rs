@@ -1,10 +1,10 @@
-//! The house rules that a program can check: which crate may depend on which, which [folder](folders) on which, how files
-//! open, what they are called, how long they are, what stands in none of them, where the [methods of a type](methods) stand, and
-//! that every number that decides a diagnosis is in [one table](thresholds).
+//! The house rules that a program can check: edges between crates and [folders](folders), what files open, are called and hold,
+//! [methods](methods) of types, [diagnostics](refusals), and [one table](thresholds) of the numbers that decide a diagnosis.
 #![allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
 
 mod folders;
 mod methods;
+mod refusals;
 mod thresholds;
 
 use serde_json::Value;

@@ -2,7 +2,8 @@
 
 use super::sample::Sampling;
 use super::vary::{effect, varying};
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::sweeps as refused;
+use hyde_diag::{Diagnostic, Span};
 use hyde_syntax::ast::{EffectUse, Expr, ExprKind, Reference, SettingValue, Study, StudyItem};
 use hyde_units::NamedUnit;
 
@@ -87,9 +88,7 @@ impl Draft {
             span: study.name.span,
         };
         if let Some(other) = study.also.first() {
-            let here = "a second experiment";
-            return Err(mistake(other.span, "a sweep is of one experiment", here)
-                .help("write a sweep for each experiment"));
+            return Err(refused::second_experiment(other.span));
         }
         for item in &study.items {
             match item {
@@ -105,21 +104,14 @@ impl Draft {
                 }
                 StudyItem::Setting(name, values, labels) => {
                     if let Some(label) = labels.first() {
-                        let here = "only the records of a calibration have labels";
-                        return Err(mistake(label.name.span, "a sweep has no labels", here)
-                            .help("leave out `at`"));
+                        return Err(refused::label(label.name.span));
                     }
                     draft.setting(&name.text, name.span, values)?;
                 }
             }
         }
         if draft.varying.is_empty() {
-            return Err(mistake(
-                draft.span,
-                "this sweep has no `vary`",
-                "no parameter changes from case to case",
-            )
-            .help("write `vary gap in 5 .. 50 [um];` and the number of points: `grid 10;`"));
+            return Err(refused::varies_nothing(draft.span));
         }
         Ok(draft)
     }
@@ -164,20 +156,13 @@ impl Draft {
                     _ => Sampling::Sobol,
                 };
                 let [value] = values else {
-                    return Err(mistake(
-                        span,
-                        format!("`{word}` takes one number"),
-                        "how many cases?",
-                    )
-                    .help(format!("write `{word} 500;`")));
+                    return Err(refused::not_one_number(word, span));
                 };
                 self.filled(Fill::Sampled(how, count(value, span)?), span)
             }
             "seed" => {
                 let [value] = values else {
-                    return Err(
-                        mistake(span, "`seed` takes one number", "which?").help("write `seed 1;`")
-                    );
+                    return Err(refused::not_one_seed(span));
                 };
                 self.seed = count(value, span)? as u64;
                 Ok(())
@@ -193,11 +178,7 @@ impl Draft {
                     self.varying.push(Varying::Cases(span));
                     Ok(())
                 }
-                _ => Err(
-                    mistake(span, "`cases` takes the name of one file", "which table?").help(
-                        "write `cases \"cases.csv\";`, a table with a column for each parameter",
-                    ),
-                ),
+                _ => Err(refused::not_one_table(span)),
             },
             "keep" => {
                 self.keep.extend(values.iter().map(|value| match value {
@@ -206,22 +187,13 @@ impl Draft {
                 }));
                 Ok(())
             }
-            _ => Err(mistake(
-                span,
-                format!("a sweep has no setting `{word}`"),
-                "not known",
-            )
-            .help("settings are `grid`, `random`, `latin`, `sobol`, `seed`, `cases` and `keep`")),
+            _ => Err(refused::unknown_setting(word, span)),
         }
     }
 
     fn filled(&mut self, fill: Fill, span: Span) -> Result<(), Diagnostic> {
         if let Some((_, before)) = self.fill {
-            return Err(
-                mistake(span, "the sweep has two sampling plans", "and this")
-                    .label(before, "by this")
-                    .help("keep one of `grid`, `random`, `latin` and `sobol`"),
-            );
+            return Err(refused::two_plans(before, span));
         }
         self.fill = Some((fill, span));
         Ok(())
@@ -237,14 +209,6 @@ pub(super) fn path(reference: &Reference) -> String {
     })
 }
 
-pub(super) fn mistake(
-    span: Span,
-    message: impl Into<String>,
-    here: impl Into<String>,
-) -> Diagnostic {
-    Diagnostic::error(Code::BadSweep, message).label(span, here)
-}
-
 fn count(value: &SettingValue, span: Span) -> Result<usize, Diagnostic> {
     if let SettingValue::Expr(Expr {
         kind: ExprKind::Number(number, None),
@@ -255,10 +219,5 @@ fn count(value: &SettingValue, span: Span) -> Result<usize, Diagnostic> {
     {
         return Ok(*number as usize);
     }
-    Err(mistake(
-        span,
-        "this is not a count",
-        "a whole number from 1 to 1e9 is expected",
-    )
-    .help("write `grid 10;`, `random 500;`, `latin 500;`, `sobol 512;`, `seed 1;`"))
+    Err(refused::not_a_count(span))
 }

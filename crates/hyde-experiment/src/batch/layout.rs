@@ -1,9 +1,10 @@
 //! [`Layout`]: from what is written to inputs and factors: every name looked up, every unit checked.
 
-use super::draft::{Choice, Draft, Fill, Varying, Written, mistake, path};
+use super::draft::{Choice, Draft, Fill, Varying, Written, path};
 use super::plan::{Factor, Input, Model, Values};
 use super::sample::{Points, SOBOL_LIMITS, Sampling};
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals::sweeps as refused;
+use hyde_diag::{Diagnostic, Span};
 use hyde_program::{Given, Parameter, Prior};
 use hyde_units::Agreement;
 
@@ -87,10 +88,7 @@ impl<'m> Layout<'m> {
                     }
                 }
                 if !found {
-                    return Err(
-                        mistake(*span, "no parameter of the model is uncertain", "which?")
-                            .help("give them a spread: `parameter Mass M = 300 [kg] ~ ±8%;`"),
-                    );
+                    return Err(refused::nothing_uncertain(*span));
                 }
             }
             Varying::Cases(span) => self.cases(*span)?,
@@ -118,25 +116,13 @@ impl<'m> Layout<'m> {
                 .filter(|known| known.rsplit('.').next() == Some(last))
                 .take(3)
                 .collect();
-            let diagnostic = mistake(
-                span,
-                format!("the model has no parameter `{name}`"),
-                "not known",
-            );
-            return Err(match near.as_slice() {
-                [] => diagnostic.help(
-                    "vary a parameter, the start of a variable as `x.start`, or a component by `= {A, B}` of models",
-                ),
-                near => diagnostic.help(format!("did you mean `{}`?", near.join("`, `"))),
-            });
+            return Err(refused::no_parameter(name, span, &near));
         };
         if parameter.is_final {
-            return Err(mistake(span, format!("`{name}` is final"), "cannot vary")
-                .label(parameter.origin.span, "made final here"));
+            return Err(refused::final_parameter(name, span, parameter.origin.span));
         }
         if self.inputs.iter().any(|input| input.name == name) {
-            return Err(mistake(span, format!("`{name}` varies twice"), "again")
-                .help("name it once: in a list, a range or the table of cases"));
+            return Err(refused::varies_twice(name, span));
         }
         Ok((self.input(name.to_owned(), parameter), parameter))
     }
@@ -183,40 +169,22 @@ impl<'m> Layout<'m> {
         let Some(&(.., first)) = self.ranges.first() else {
             return match &draft.fill {
                 None => Ok(()),
-                Some((_, span)) => {
-                    Err(
-                        mistake(*span, "the sweep has no range", "points need a range")
-                            .help("write `vary gap in 5 .. 50 [um];`, or remove this"),
-                    )
-                }
+                Some((_, span)) => Err(refused::plan_without_range(*span)),
             };
         };
         match &draft.fill {
-            None => Err(mistake(
-                first,
-                "the ranges have no sampling plan",
-                "how many points?",
-            )
-            .help("write `grid 10;`, `random 500;`, `latin 500;` or `sobol 512;`")),
+            None => Err(refused::ranges_without_plan(first)),
             Some((Fill::Grid(counts), span)) => {
                 if counts.len() > 1 && counts.len() != self.ranges.len() {
-                    let message =
-                        format!("{} counts for {} ranges", counts.len(), self.ranges.len());
-                    return Err(mistake(*span, message, "give one for all, or one for each"));
+                    let ranges = self.ranges.len();
+                    return Err(refused::counts_of_grid(counts.len(), ranges, *span));
                 }
                 Ok(())
             }
             Some((Fill::Sampled(how, count), span)) => {
                 let (most, dimensions) = SOBOL_LIMITS;
                 if *how == Sampling::Sobol && (*count > most || self.ranges.len() > dimensions) {
-                    return Err(mistake(
-                        *span,
-                        format!(
-                            "a Sobol sequence has at most {most} points of {dimensions} ranges"
-                        ),
-                        "too many",
-                    )
-                    .help("write `latin` or `random` instead"));
+                    return Err(refused::long_sobol_sequence(SOBOL_LIMITS, *span));
                 }
                 if let Some((input, .., span)) = self
                     .ranges
@@ -224,12 +192,7 @@ impl<'m> Layout<'m> {
                     .find(|(input, ..)| self.inputs[*input].structural)
                 {
                     let name = &self.inputs[*input].name;
-                    return Err(mistake(
-                        *span,
-                        format!("`{name}` changes the structure of the equations: each value is compiled separately"),
-                        "sampled",
-                    )
-                    .help(format!("give it few values: `vary {name} = {{…, …}}`")));
+                    return Err(refused::samples_structure(name, *span));
                 }
                 let seed = self.model.seed.unwrap_or(draft.seed);
                 let ranges = self.ranges.iter().enumerate();
@@ -253,7 +216,7 @@ impl<'m> Layout<'m> {
         let table = self
             .model
             .cases
-            .ok_or_else(|| mistake(span, "the table of cases is missing", "named here"))?;
+            .ok_or_else(|| refused::missing_table(span))?;
         let (mut inputs, mut lists) = (Vec::new(), Vec::new());
         for column in table.columns() {
             let (input, parameter) = self.number(column.name(), span)?;
@@ -291,19 +254,18 @@ fn check(written: &Written, name: &str, parameter: &Parameter) -> Result<(), Dia
     let Some(misfit) = parameter.misfit(&given) else {
         return Ok(());
     };
-    let code = match (&written.unit, misfit.instead.is_empty()) {
-        (Some(unit), _)
-            if unit.unit().dimension.agreement(parameter.dimension) != Agreement::Same =>
-        {
-            Code::UnitMismatch
-        }
-        _ => Code::BadSweep,
+    let other = written.unit.as_ref().is_some_and(|unit| {
+        unit.unit().dimension.agreement(parameter.dimension) != Agreement::Same
+    });
+    let refuse = match other {
+        true => refused::other_dimension,
+        false => refused::misfit,
     };
-    let diagnostic = Diagnostic::error(code, format!("`{name}` {}", misfit.reason))
-        .label(written.span, "does not fit")
-        .label(parameter.origin.span, format!("in {}", parameter.unit));
-    Err(match misfit.help() {
-        Some(help) => diagnostic.help(help),
-        None => diagnostic,
-    })
+    let declared = (parameter.origin.span, &*parameter.unit.to_string());
+    Err(refuse(
+        (name, &misfit.reason),
+        written.span,
+        declared,
+        misfit.help(),
+    ))
 }

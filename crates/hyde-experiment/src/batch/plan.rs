@@ -3,9 +3,10 @@
 //! A plan is a product of factors, the last one the fastest: each list and each choice is a factor, so is the table of cases,
 //! so are all sampled ranges together. A grid makes a list of each range.
 
-use super::draft::{Draft, mistake};
+use super::draft::Draft;
 use super::layout::Layout;
 use super::sample::Points;
+use crate::refusals::sweeps as refused;
 use hyde_diag::Diagnostic;
 use hyde_program::Program;
 use hyde_signal::Table;
@@ -98,14 +99,7 @@ impl Plan {
         let count = counts.into_iter().try_fold(1_usize, usize::checked_mul);
         let count = count
             .filter(|&count| count <= 1_000_000_000)
-            .ok_or_else(|| {
-                mistake(
-                    draft.span,
-                    "this sweep has more than 1e9 cases",
-                    "lists and ranges multiply",
-                )
-                .help("sample the ranges together: `latin 1000;`")
-            })?;
+            .ok_or_else(|| refused::too_many_cases(draft.span))?;
         Ok(Self {
             inputs,
             factors,

@@ -1,7 +1,8 @@
 //! `vary …`: one thing that varies, as written: alternatives, a list, or a range of literals.
 
-use super::draft::{Choice, ChoiceOf, Varying, Written, mistake, path};
-use hyde_diag::{Code, Diagnostic};
+use super::draft::{Choice, ChoiceOf, Varying, Written, path};
+use crate::refusals::sweeps as refused;
+use hyde_diag::Diagnostic;
 use hyde_syntax::ast::{EffectUse, Expr, ExprKind, Unary, UnitText, Variation, Varied};
 use hyde_units::NamedUnit;
 
@@ -10,30 +11,15 @@ pub(super) fn varying(variation: &Variation) -> Result<Varying, Diagnostic> {
     let target = &variation.target;
     let span = target.span;
     if let Some(per) = &variation.per {
-        let here = "a sweep sets one value for a whole run";
-        return Err(mistake(per.span, "a sweep has no `per`", here)
-            .help("only a calibration has values per label: `vary saddle.M per load;`"));
+        return Err(refused::per_label(per.span));
     }
     let list = || match &variation.values {
         Some(Expr {
             kind: ExprKind::Array(items, unit),
             ..
         }) if !items.is_empty() => Ok((items, unit.as_ref())),
-        Some(other) => Err(mistake(
-            other.span,
-            "the alternatives are not a list",
-            "one value is not a sweep",
-        )
-        .help("write them in braces: `{…, …}`")),
-        None => Err(mistake(
-            span,
-            format!(
-                "`{}` has neither a range nor a list of values",
-                path(target)
-            ),
-            "between what?",
-        )
-        .help("write `in 5 .. 50 [um]` for a range, or `= {5, 10, 20} [um]` for these values")),
+        Some(other) => Err(refused::not_a_list(other.span)),
+        None => Err(refused::varies_between_nothing(&path(target), span)),
     };
     match variation.what {
         Varied::Model => {
@@ -108,23 +94,14 @@ fn model_name(expr: &Expr) -> Result<String, Diagnostic> {
     if let ExprKind::Reference(reference) = &expr.kind {
         return Ok(reference.dotted());
     }
-    Err(
-        mistake(expr.span, "this is not the name of a model", "a name is expected").help(
-            "give the variant a name, `model Worn = Axis(gap = 20 [um]);`, and write `vary model = {Axis, Worn};`",
-        ),
-    )
+    Err(refused::not_a_model(expr.span))
 }
 
 fn file_name(expr: &Expr) -> Result<String, Diagnostic> {
     if let ExprKind::String(text) = &expr.kind {
         return Ok(text.clone());
     }
-    Err(mistake(
-        expr.span,
-        "this is not the name of a file",
-        "a text is expected",
-    )
-    .help("write `vary record file = {\"slow.csv\", \"fast.csv\"};`"))
+    Err(refused::not_a_file(expr.span))
 }
 
 /// A literal, with a sign and a unit; `unit` stands behind the whole range or list.
@@ -143,8 +120,7 @@ fn number(expr: &Expr, unit: Option<&UnitText>) -> Result<Written, Diagnostic> {
         });
     }
     let ExprKind::Number(value, own) = &inner.kind else {
-        return Err(mistake(expr.span, "this is not a number", "a number with its unit is expected")
-            .help("write `5 [um]`; for parameters that change together use a table: `cases \"cases.csv\";`"));
+        return Err(refused::not_a_number(expr.span));
     };
     let Some(text) = own.as_ref().or(unit) else {
         return Ok(Written {
@@ -154,9 +130,8 @@ fn number(expr: &Expr, unit: Option<&UnitText>) -> Result<Written, Diagnostic> {
             span: expr.span,
         });
     };
-    let unit = NamedUnit::parse(&text.text).map_err(|error| {
-        Diagnostic::error(Code::BadUnit, error.to_string()).label(text.span, "cannot be read")
-    })?;
+    let unit = NamedUnit::parse(&text.text)
+        .map_err(|error| refused::bad_unit(&error.to_string(), text.span))?;
     Ok(Written {
         value: unit.unit().to_si(sign * value),
         unit: Some(unit),

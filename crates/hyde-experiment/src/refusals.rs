@@ -1,0 +1,4 @@
+//! Every diagnostic of experiments, as data.
+
+pub(crate) mod records;
+pub(crate) mod sweeps;
