@@ -10,10 +10,11 @@ pub use numbers::{Local, Number};
 
 use crate::asked::Asked;
 use crate::project::{Aim, Loaded, Project};
+use crate::refusals::calibrations as refused;
 use crate::refused::{Fault, Refused};
 use hyde_calibrate::{CalibrationPlan, Observer, Recording, Varied};
 use hyde_compiler::Compiled;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_syntax::ast::{Experiment, Study, StudyKind};
 
 /// Everything a calibration is made of, of one experiment.
@@ -118,23 +119,9 @@ pub(crate) fn single_plan(
     };
     let per = plan.labels().next().map(|per| per.span);
     let wrong = match (per, experiments.as_slice()) {
-        (Some(span), _) => Diagnostic::error(
-            Code::BadStudy,
-            format!("the calibration `{}` has a parameter with several values, and this study takes one for all records", plan.name),
-        )
-        .label(span, "a value each")
-        .help("write a second calibration without `per`, of the records that share all values, and name it"),
+        (Some(span), _) => refused::several_values(&plan.name, span),
         (None, [only]) => return Ok(Some((plan, only.clone()))),
-        (None, several) => Diagnostic::error(
-            Code::BadStudy,
-            format!(
-                "the calibration `{}` is of {} experiments, and this study takes one",
-                plan.name,
-                several.len()
-            ),
-        )
-        .label(plan.span, "this calibration")
-        .help("write a second calibration whose records are of one experiment, and name it"),
+        (None, several) => refused::several_experiments(&plan.name, plan.span, several.len()),
     };
     loaded.diagnostics.push(wrong);
     Ok(None)
@@ -161,51 +148,26 @@ fn plan(
         let known = file
             .experiments()
             .find(|experiment| experiment.name.text == source.experiment);
-        let (problem, help) = match known {
-            None => (
-                format!("the file has no experiment `{}`", source.experiment),
-                "name an experiment of the file, `fit bench(\"fit-*.csv\");`".to_owned(),
-            ),
-            Some(known) if !plan.models.contains(&known.model.dotted()) => (
-                format!(
-                    "`{}` is an experiment of `{}`, the calibration is of `{}`",
-                    source.experiment,
-                    known.model.dotted(),
-                    plan.models.join("`, `")
-                ),
-                format!(
-                    "name all models that share parameters: `calibrate {} of {}, {}`",
-                    plan.name,
-                    plan.models.join(", "),
-                    known.model.dotted()
-                ),
-            ),
+        diagnostics.push(match known {
+            None => refused::no_experiment(&source.experiment, source.span),
+            Some(known) if !plan.models.contains(&known.model.dotted()) => {
+                let (model, own) = (known.model.dotted(), (&*source.experiment, source.span));
+                refused::experiment_of_another_model(own, &model, &plan.name, &plan.models)
+            }
             Some(known) => {
                 if !found.iter().any(|own| own.name.text == known.name.text) {
                     found.push(known.clone());
                 }
                 continue;
             }
-        };
-        diagnostics.push(
-            Diagnostic::error(Code::BadStudy, problem)
-                .label(source.span, "asked for here")
-                .help(help),
-        );
+        });
     }
     for (number, model) in plan.models.iter().enumerate() {
-        let problem = if plan.models[..number].contains(model) {
-            format!("the model `{model}` is named twice")
-        } else if found.iter().any(|own| own.model.dotted() == *model) || found.is_empty() {
-            continue;
-        } else {
-            format!("no record of the calibration is of the model `{model}`")
-        };
-        diagnostics.push(
-            Diagnostic::error(Code::BadStudy, problem)
-                .label(plan.span, "in this study")
-                .help("name each model once, and records of an experiment of each: `fit bench(\"fit-*.csv\");`"),
-        );
+        if plan.models[..number].contains(model) {
+            diagnostics.push(refused::model_twice(model, plan.span));
+        } else if !found.is_empty() && found.iter().all(|own| own.model.dotted() != *model) {
+            diagnostics.push(refused::model_without_record(model, plan.span));
+        }
     }
     Ok((!diagnostics.has_errors() && !found.is_empty()).then_some((plan, found)))
 }

@@ -2,11 +2,11 @@
 
 use crate::asked::Asked;
 use crate::inputs::Kind;
-use crate::near::nearest;
 use crate::package::Roots;
 use crate::project::Aim;
+use crate::refusals::files as refused;
 use hyde_compiler::{File, FmuInterface, fmu_has_no_equations};
-use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_fmu_import::{Fmu, InProcess};
 use hyde_program::{Foreign, Program};
 use hyde_sim::{Failure, FailureKind};
@@ -131,35 +131,15 @@ fn mistaken(fmu: &Fmu, changes: &[Change], span: Span) -> Vec<Diagnostic> {
         if parameters.contains(&word) {
             continue;
         }
-        let message = format!("the FMU `{file}` has no parameter `{word}`");
-        let diagnostic = Diagnostic::error(Code::UnknownModification, message)
-            .label(change.target.span, "changes nothing");
         let other = fmu.interface.names.iter().any(|name| name == word);
-        found.push(match nearest(word, parameters.iter().copied()) {
-            _ if other => diagnostic.help(format!(
-                "`{word}` is an input or an output: write an equation for it where the component is declared"
-            )),
-            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None if parameters.is_empty() => diagnostic.help("it has no parameters but `step`"),
-            None => {
-                let shown = parameters.iter().take(8).copied().collect::<Vec<_>>();
-                let more = if parameters.len() > 8 { ", …" } else { "" };
-                diagnostic.help(format!("it has `step`, `{}`{more}", shown.join("`, `")))
-            }
-        });
+        let here = (word, change.target.span);
+        found.push(refused::no_parameter_of_fmu(file, here, other, &parameters));
     }
     let given = changes
         .iter()
         .any(|own| own.target.as_word() == Some("step"));
     if !given && fmu.description.step.is_none() {
-        found.push(
-            Diagnostic::error(
-                Code::NoValue,
-                format!("the FMU `{file}` proposes no communication step"),
-            )
-            .label(span, "how often is it called?")
-            .help(format!("write `fmu(\"{file}\", step = 1 [ms])`")),
-        );
+        found.push(refused::no_step(file, span));
     }
     found
 }
@@ -193,23 +173,15 @@ fn of_file(
     };
     let content = asked
         .read(Kind::Fmu, importer, name, &path)
-        .map_err(|reason| {
-            let diagnostic = Diagnostic::error(
-                Code::NotDeclared,
-                format!("an FMU has no file: {reason}"),
-            );
-            Box::new(diagnostic.label(span, "named here").help(
-                "the path is relative to the folder of the manifest, or, without a manifest, to that of the model",
-            ))
-        })?;
+        .map_err(|reason| Box::new(refused::no_fmu(&reason, span)))?;
     let hash = format!("{:x}", Sha256::digest(&content));
     match Fmu::read(name, content, package, model) {
         Ok(fmu) => Ok((path, hash, fmu)),
-        Err(unusable) => Err(Box::new(
-            Diagnostic::error(Code::BadFmu, unusable.what)
-                .label(span, "named here")
-                .help(unusable.help),
-        )),
+        Err(unusable) => Err(Box::new(refused::unusable_fmu(
+            &unusable.what,
+            span,
+            &unusable.help,
+        ))),
     }
 }
 
@@ -245,23 +217,6 @@ pub(crate) fn failed(failure: &Failure, at: &str) -> Option<Diagnostic> {
     else {
         return None;
     };
-    let of = match component.as_str() {
-        "" => format!("the FMU `{file}`"),
-        component => format!("the FMU `{file}` of `{component}`"),
-    };
-    let message = format!("{of} failed {at}: {what}");
-    let mut diagnostic = Diagnostic::error(Code::FmuFailed, message);
-    for origin in &failure.origins {
-        diagnostic = diagnostic.label(origin.span, "this component");
-    }
-    diagnostic = match log.is_empty() {
-        true if !what.starts_with("`fmi") => diagnostic,
-        true => diagnostic.note("it logged no warning or error"),
-        false => log.iter().fold(diagnostic, |diagnostic, line| {
-            diagnostic.note(format!("it logged {line}"))
-        }),
-    };
-    Some(diagnostic.help(
-        "check its parameters, its inputs just before (`hyde run … --out`), and the communication step `step`",
-    ))
+    let of = (file.as_str(), component.as_str());
+    Some(refused::fmu_failed(of, at, what, log, &failure.origins))
 }

@@ -69,6 +69,7 @@ mod project;
 pub mod record_files;
 pub mod record_settings;
 mod records;
+mod refusals;
 mod refused;
 pub mod render;
 pub mod responses;

@@ -10,8 +10,9 @@
 
 mod manifest;
 
+use crate::refusals::packages as refused;
 use crate::world::{World, below, read_text};
-use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use hyde_diag::{Diagnostic, Diagnostics, Sources};
 pub use manifest::Manifest;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -136,20 +137,12 @@ impl Roots {
         match found.as_slice() {
             [(number, place)] => {
                 let text = read_text(self.world.as_ref(), place)
-                    .map_err(|reason| Diagnostic::error(Code::NotDeclared, reason))?;
+                    .map_err(|reason| refused::unreadable(&reason))?;
                 let place = place.to_string_lossy().into_owned();
                 self.owners.borrow_mut().insert(place.clone(), *number);
                 Ok(Some((place, text)))
             }
-            [(_, first), (_, second), ..] => Err(Diagnostic::error(
-                Code::Duplicate,
-                format!(
-                    "the package `{package}` is in `{}` and in `{}`",
-                    first.display(),
-                    second.display()
-                ),
-            )
-            .help("rename one of the two, and its file as well")),
+            [(_, first), (_, second), ..] => Err(refused::in_two_places(package, first, second)),
             [] => self.beyond(own, package),
         }
     }
@@ -162,15 +155,13 @@ impl Roots {
                 continue;
             }
             let name = root.manifest.as_ref().map_or("", |m| m.name.as_str());
-            return Err(Diagnostic::error(
-                Code::NotDeclared,
-                format!("the package `{package}` is in `{name}`, which is not a dependency here"),
-            )
-            .help(format!(
-                "add it to `{}`, below `[dependencies]`: `\"{name}\" = \"…/{name}\"`, the path to `{}`",
-                self.roots[own].folder.join(MANIFEST).display(),
-                root.folder.display()
-            )));
+            let manifest = self.roots[own].folder.join(MANIFEST);
+            return Err(refused::not_a_dependency(
+                package,
+                name,
+                &manifest,
+                &root.folder,
+            ));
         }
         Ok(None)
     }
@@ -179,27 +170,18 @@ impl Roots {
     pub fn data(&self, importer: &str, path: &str) -> Result<PathBuf, Diagnostic> {
         let root = &self.roots[self.owner(importer)];
         if !is_inside(path) {
-            return Err(leaves(path, "the package's folder"));
+            return Err(refused::outside(path, "the package's folder"));
         }
         let Some(manifest) = &root.manifest else {
             let place = root.folder.join(path);
             return match links_out(self.world.as_ref(), &root.folder, &place) {
-                true => Err(leaves(path, "the model's folder")),
+                true => Err(refused::outside(path, "the model's folder")),
                 false => Ok(place),
             };
         };
         if !manifest.data.iter().any(|known| known == path) {
-            return Err(Diagnostic::error(
-                Code::NotDeclared,
-                format!(
-                    "`{path}` is not among the data of the package `{}`",
-                    manifest.name
-                ),
-            )
-            .help(format!(
-                "declare it in `{}`: `data = [\"{path}\"]`",
-                root.folder.join(MANIFEST).display()
-            )));
+            let place = root.folder.join(MANIFEST);
+            return Err(refused::not_among_data(path, &manifest.name, &place));
         }
         Ok(root.folder.join(path))
     }
@@ -263,7 +245,7 @@ impl Root {
                 continue;
             }
             if links_out(world, &top, &place) {
-                return Err(leaves(&place.to_string_lossy(), "its folder"));
+                return Err(refused::outside(&place.to_string_lossy(), "its folder"));
             }
             found.push(place);
         }
@@ -288,11 +270,6 @@ pub fn links_out(world: &dyn World, folder: &Path, path: &Path) -> bool {
         (Some(folder), Some(path)) => !path.starts_with(folder),
         _ => false,
     }
-}
-
-fn leaves(path: &str, folder: &str) -> Diagnostic {
-    Diagnostic::error(Code::NotDeclared, format!("`{path}` is outside {folder}"))
-        .help("move the file into the folder: Hyde reads no file outside it")
 }
 
 fn same(world: &dyn World, a: &Path, b: &Path) -> bool {

@@ -5,8 +5,9 @@ use crate::inputs::Kind;
 use crate::project::Records;
 use crate::record_settings::{self, side_file};
 use crate::records::{Record, missing};
+use crate::refusals::files as refused;
 use crate::world::{World, matching};
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_signal::{Note, Table};
 use hyde_syntax::ast::RecordItem;
 use sha2::{Digest, Sha256};
@@ -163,13 +164,8 @@ pub(crate) fn joined(
     }
     let several = files.len() > 1;
     let mut table = hyde_signal::join(tables).map_err(|error| {
-        let message = format!("`{}`: {error}", shown.display());
-        Diagnostic::error(Code::BadRecord, message)
-            .label(
-                item.default.as_ref().unwrap_or(&item.name).span,
-                "the record is declared here",
-            )
-            .help(error.repair(&item.name.text))
+        let (file, repair) = (shown.display().to_string(), error.repair(&item.name.text));
+        refused::cannot_join(item, &file, &error.to_string(), &repair)
     })?;
     if several {
         table.tell(Note::new(format!(

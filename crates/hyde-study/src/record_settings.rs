@@ -2,8 +2,9 @@
 //! beside it.
 
 use crate::record_files::{self, Files};
+use crate::refusals::files as refused;
 use crate::world::World;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use hyde_diag::{Diagnostic, Diagnostics, Sources};
 use hyde_signal::{Note, Table};
 use hyde_syntax::ast::RecordItem;
 use std::ffi::OsString;
@@ -31,10 +32,15 @@ pub(crate) fn alone(
 ) -> Result<Table, (String, Option<String>)> {
     let item = parsed(RECORD, "").map_err(|reason| (reason, None))?;
     let open = |file: &Path| world.read(file);
-    let missing = |reason: &str| Diagnostic::error(Code::NoRecord, reason.to_owned());
-    record_files::joined(&item, given.settings.as_ref(), files, &open, &missing)
-        .map(|record| record.table)
-        .map_err(|diagnostic| (diagnostic.message.clone(), diagnostic.help.clone()))
+    record_files::joined(
+        &item,
+        given.settings.as_ref(),
+        files,
+        &open,
+        &refused::no_record,
+    )
+    .map(|record| record.table)
+    .map_err(|diagnostic| (diagnostic.message.clone(), diagnostic.help.clone()))
 }
 
 /// What a record is called where nobody has named it.
@@ -109,11 +115,8 @@ pub(crate) fn table(
         (None, Some(side)) => {
             let name = side_file(path).display().to_string();
             let text = String::from_utf8_lossy(&side).trim().to_owned();
-            let settings = parsed(&item.name.text, &text).map_err(|reason| {
-                Diagnostic::error(Code::BadRecord, format!("`{name}`: {reason}"))
-                    .label(item.name.span, "the record is declared here")
-                    .help("write what would stand in the experiment: `(time = \"Time\" in [ms]) every 1 [ms]`")
-            })?;
+            let settings = parsed(&item.name.text, &text)
+                .map_err(|reason| refused::bad_settings(&name, &reason, item.name.span))?;
             let note = Note::new(format!("read as `{name}` says: {text}"));
             (Some(settings), Some(note))
         }

@@ -5,8 +5,9 @@ use crate::package::links_out;
 use crate::project::Records;
 use crate::record_files::{self, Files};
 use crate::record_settings::Given;
+use crate::refusals::files as refused;
 use hyde_compiler::Header;
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::{Diagnostic, Diagnostics};
 use hyde_signal::Table;
 use hyde_syntax::ast::{Experiment, RecordItem};
 use std::collections::BTreeMap;
@@ -149,20 +150,10 @@ fn files_of(
             )
         });
     if !inside {
-        diagnostics.push(
-            Diagnostic::error(
-                Code::NoRecord,
-                format!("`{}` leaves the model's folder", default.text),
-            )
-            .label(
-                default.span,
-                "only files below the model's folder or `--data` are read",
-            )
-            .help(format!(
-                "give it on the command line: `--record '{}={}'`",
-                item.name.text, default.text
-            )),
-        );
+        diagnostics.push(refused::leaves_folder(
+            &item.name.text,
+            (&default.text, default.span),
+        ));
         return None;
     }
     let root = asked
@@ -173,17 +164,8 @@ fn files_of(
     let files = Files::named(asked.world.as_ref(), &root, &default.text);
     let out = |file: &PathBuf| links_out(asked.world.as_ref(), &root, file);
     if files.all.iter().any(out) {
-        let message = format!("`{}` is a link to a file outside its folder", default.text);
-        let diagnostic = Diagnostic::error(Code::NoRecord, message)
-            .label(
-                default.span,
-                "only files below the model's folder or `--data` are read",
-            )
-            .help(format!(
-                "move the file into the folder, or give it on the command line: `--record {}=PATH`",
-                item.name.text
-            ));
-        diagnostics.push(diagnostic);
+        let default = (&*default.text, default.span);
+        diagnostics.push(refused::links_out(&item.name.text, default));
         return None;
     }
     Some(files)
@@ -191,18 +173,8 @@ fn files_of(
 
 /// That the file of a record is not there.
 pub(crate) fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {
-    let name = &item.name.text;
-    let message = format!("the record `{name}` is missing: {reason}");
-    let diagnostic = match needed {
-        Records::Needed => Diagnostic::error(Code::NoRecord, message),
-        Records::IfThere => Diagnostic::warning(
-            Code::NoRecord,
-            format!("{message}; only the model is checked, without its experiment"),
-        ),
-    };
-    diagnostic
-        .label(item.name.span, "declared here")
-        .help(format!(
-            "give its file: `--record {name}=PATH`, or the folder it is below: `--data DIR`"
-        ))
+    match needed {
+        Records::Needed => refused::missing_record(&item.name, reason),
+        Records::IfThere => refused::missing_record_unused(&item.name, reason),
+    }
 }

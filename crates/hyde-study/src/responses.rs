@@ -19,9 +19,10 @@ pub use response::Response;
 pub use stepped::Stepped;
 
 use crate::operating_point;
+use crate::refusals::responses as refused;
 use crate::{Aim, Fault, Project, Refused, assumptions, run_failure};
 use hyde_compiler::Compiled;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_experiment::{
     About, Linear, LinearizeError, MeasuredCurve, Poles, Run, RunError, linearize_about,
     parameters, poles, swept_response,
@@ -256,8 +257,7 @@ impl Prepared {
         };
         let input = std::slice::from_ref(&bode.input);
         let nothing = |reason: String| {
-            let diagnostic = Diagnostic::error(Code::NoResponse, reason);
-            let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");
+            let diagnostic = refused::no_response_from(&reason, bode.origin.span);
             Failed::Diagnosed(Box::new(diagnostic))
         };
         let linear = linearize_about(program, &self.tables, p, input, about).map_err(|error| {

@@ -2,8 +2,9 @@
 
 use crate::fmus;
 use crate::near::did_you_mean;
+use crate::refusals::runs as refused;
 use crate::refused::Fault;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::{Diagnostic, Span};
 use hyde_experiment::RunError;
 use hyde_program::{Output, Program};
 use hyde_sim::{Failure, FailureKind, Reading};
@@ -19,9 +20,10 @@ pub fn diagnostic(
     program: &Program,
     experiment: Option<&Experiment>,
 ) -> (Diagnostic, Fault) {
+    let of_experiment = experiment.map(|experiment| experiment.name.span);
     match error {
         RunError::NoParameter(name) => (
-            Diagnostic::error(Code::BadSet, no_parameter(program, name)),
+            refused::no_parameter(&no_parameter(program, name)),
             Fault::Asked,
         ),
         RunError::CannotSet(name, why) => {
@@ -33,62 +35,48 @@ pub fn diagnostic(
             (cannot_set(program, name, message), Fault::Asked)
         }
         RunError::Row(fault) => {
-            let diagnostic = Diagnostic::error(Code::NotAllowed, fault.to_string())
-                .label(fault.drives.2, "driven here");
-            (diagnostic.help(ROW_HELP), Fault::Model)
+            let (why, driven) = (fault.to_string(), fault.drives.2);
+            (
+                refused::row_not_allowed(&why, driven, ROW_HELP),
+                Fault::Model,
+            )
         }
         RunError::NoGradientBy(name, why) => {
-            let message = format!("there is no gradient by `{name}`: {why}");
-            let diagnostic = Diagnostic::error(Code::NoGradient, message);
-            let diagnostic = match program.parameter(name) {
-                Some((parameter, _)) => {
-                    diagnostic.label(parameter.origin.span, "its value is given here")
-                }
-                None => diagnostic,
-            };
-            let help = "vary it with `--set` in separate runs";
-            (diagnostic.help(help), Fault::Asked)
+            let parameter = declared(program, name);
+            (refused::no_gradient_by(name, why, parameter), Fault::Asked)
         }
-        RunError::NoStop => no_stop(experiment),
+        RunError::NoStop => match of_experiment {
+            Some(experiment) => (refused::no_stop(experiment), Fault::Model),
+            None => (refused::no_stop_asked(), Fault::Asked),
+        },
         RunError::EndsBeforeStart {
             start_s,
             stop_s,
             record,
         } => (
-            ends_before_start(*start_s, *stop_s, record.as_deref(), experiment),
+            ends_before_start(*start_s, *stop_s, record.as_deref(), of_experiment),
             Fault::Model,
         ),
-        RunError::NotPositive(what, value) => {
-            let message = format!("`{what}` must be positive and finite, not {value}");
-            let diagnostic = Diagnostic::error(Code::BadSolve, message);
-            let diagnostic = match experiment {
-                Some(experiment) => diagnostic.label(experiment.name.span, "in this experiment"),
-                None => diagnostic,
-            };
-            let help = format!("give `{what}` such a value, or leave it out");
-            (diagnostic.help(help), Fault::Model)
-        }
+        RunError::NotPositive(what, value) => (
+            refused::not_positive(what, *value, of_experiment),
+            Fault::Model,
+        ),
         RunError::TooManyRows {
             rows,
             columns,
             least_s,
         } => (
-            too_many_rows((*rows, *columns), *least_s, experiment),
+            too_many_rows((*rows, *columns), *least_s, of_experiment),
             Fault::Model,
         ),
         RunError::Compare(error) => {
-            let message = format!(
-                "the channel `{}` cannot be compared: {}",
-                error.channel, error.cause
-            );
-            let diagnostic = Diagnostic::error(Code::BadRecord, message);
             let channels = &program.experiment.measured;
             let channel = channels.iter().find(|known| known.name == error.channel);
-            let diagnostic = match channel {
-                Some(channel) => diagnostic.label(channel.origin.span, "measured here"),
-                None => diagnostic,
-            };
-            (diagnostic, Fault::Model)
+            let (why, measured) = (error.cause.to_string(), channel.map(|own| own.origin.span));
+            (
+                refused::cannot_compare(&error.channel, &why, measured),
+                Fault::Model,
+            )
         }
         RunError::NotANumber {
             measure,
@@ -96,15 +84,10 @@ pub fn diagnostic(
             t,
         } => {
             let t = hyde_units::significant(*t, 7);
-            let message =
-                format!("`{measure}` has no value: `{variable}` is not a number at {t} s");
             let measures = &program.experiment.measures;
             let known = measures.iter().find(|known| known.name == *measure);
-            let diagnostic = Diagnostic::error(Code::NotFinite, message);
-            let diagnostic = match known {
-                Some(known) => diagnostic.label(known.origin.span, "read here"),
-                None => diagnostic,
-            };
+            let here = known.map(|known| known.origin.span);
+            let diagnostic = refused::measure_without_value(measure, (variable, &t), here);
             (diagnostic, Fault::Expectation)
         }
         RunError::Failed(failure) => {
@@ -127,77 +110,38 @@ pub(crate) fn no_parameter(program: &Program, name: &str) -> String {
 
 /// A value that cannot be set, at the parameter it was meant for.
 pub fn cannot_set(program: &Program, name: &str, message: String) -> Diagnostic {
-    let diagnostic = Diagnostic::error(Code::BadSet, message);
-    match program.parameter(name) {
-        Some((parameter, _)) => diagnostic.label(parameter.origin.span, "its value is given here"),
-        None => diagnostic,
-    }
+    refused::cannot_set(&message, declared(program, name))
+}
+
+/// Where the value of a parameter is given.
+fn declared(program: &Program, name: &str) -> Option<Span> {
+    let (parameter, _) = program.parameter(name)?;
+    Some(parameter.origin.span)
 }
 
 /// Results that fit nowhere, and how far apart rows may be.
 fn too_many_rows(
     (rows, columns): (f64, usize),
     least_s: f64,
-    experiment: Option<&Experiment>,
+    experiment: Option<Span>,
 ) -> Diagnostic {
     let significant = hyde_units::significant;
     let gigabytes = significant(rows * columns as f64 * 8e-9, 2);
     let rows = significant(rows, 3);
-    let message =
-        format!("the results would have {rows} rows of {columns} columns, {gigabytes} GB");
-    let diagnostic = Diagnostic::error(Code::BadSolve, message);
-    let diagnostic = match experiment {
-        Some(experiment) => diagnostic.label(experiment.name.span, "this experiment asks for them"),
-        None => diagnostic,
-    };
     let written = significant(10.0_f64.powf(least_s.log10().ceil()), 1);
-    diagnostic.help(format!(
-        "write `every {written} [s]` or more, or leave `every` out: events are always recorded, and measures do \
-         not depend on the sampling of the results"
-    ))
-}
-
-fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Fault) {
-    let diagnostic = Diagnostic::error(Code::NoStop, "the end of the run is not defined");
-    match experiment {
-        Some(experiment) => (
-            diagnostic
-                .label(experiment.name.span, "this experiment has no `stop`")
-                .help("write `solve auto(rtol = 1e-6) stop 1 [s];`, or `stop file.end` for the end of a record"),
-            Fault::Model,
-        ),
-        None => (
-            diagnostic.help("a model without an experiment is run with `--stop 1`"),
-            Fault::Asked,
-        ),
-    }
+    refused::too_many_rows((&rows, columns, &gigabytes), &written, experiment)
 }
 
 fn ends_before_start(
     start_s: f64,
     stop_s: f64,
     record: Option<&str>,
-    experiment: Option<&Experiment>,
+    experiment: Option<Span>,
 ) -> Diagnostic {
     let (start, stop) = (instant(start_s), instant(stop_s));
-    let diagnostic = match record {
-        Some(record) => Diagnostic::error(
-            Code::BadSolve,
-            format!("the run would end at {stop}, but its record `{record}` begins at {start}"),
-        )
-        .note("a run begins at the first sample of its record and uses the time of the record")
-        .help(format!(
-            "write `stop {record}.begin + 1 [s]` for a run of 1 s, or `stop {record}.end` for the whole record"
-        )),
-        None => Diagnostic::error(
-            Code::BadSolve,
-            format!("the run would end at {stop}, but it starts at {start}"),
-        )
-        .help("write a `stop` that is later than the start: `stop 1 [s]`"),
-    };
-    match experiment {
-        Some(experiment) => diagnostic.label(experiment.name.span, "of this experiment"),
-        None => diagnostic,
+    match record {
+        Some(record) => refused::ends_before_record((&start, &stop), record, experiment),
+        None => refused::ends_before_start((&start, &stop), experiment),
     }
 }
 
@@ -235,156 +179,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
     if let Some(diagnostic) = fmus::failed(failure, &at) {
         return diagnostic;
     }
-    let (code, message, help) = match &failure.kind {
-        FailureKind::Inconsistent { singular, at_start } => {
-            let what = if *at_start {
-                "no consistent initial conditions"
-            } else {
-                "no consistent values after an event"
-            };
-            let list: Vec<String> = singular
-                .iter()
-                .take(4)
-                .map(|name| format!("`{name}`"))
-                .collect();
-            let more = if singular.len() > 4 { ", …" } else { "" };
-            if singular.is_empty() {
-                (
-                    Code::InitialFailed,
-                    format!("{what} {at}"),
-                    "check the start values, and whether these equations have a solution there",
-                )
-            } else {
-                (
-                    Code::InitialFailed,
-                    format!(
-                        "{what} {at}: no equation determines {}{more} here",
-                        list.join(", ")
-                    ),
-                    "these equations depend on each other there: look for a factor that is 0, a massless part that only \
-                     friction holds, or parts that fix each other",
-                )
-            }
-        }
-        FailureKind::Solver(reason) => (
-            Code::SolverFailed,
-            format!("the solver failed {at}: {reason}"),
-            "look for a jump without an event, such as an `if` in an array equation or inside `noEvent`, or for a stiffness far larger than the others",
-        ),
-        FailureKind::NotFinite => (
-            Code::NotFinite,
-            format!("an equation has no finite value {at}"),
-            "look for a division by zero or the square root of a negative number",
-        ),
-        FailureKind::Chattering(causes) => {
-            let list: Vec<String> = causes.iter().map(|cause| format!("`{cause}`")).collect();
-            (
-                Code::Chattering,
-                format!("endless sequence of events {at}: {}", list.join(", ")),
-                if causes.len() > 1 {
-                    "each of these conditions makes the other true: leave a gap between their thresholds"
-                } else {
-                    "the condition remains true after the event: add a mode for rest, such as `mode lying { v = 0; exit … }`"
-                },
-            )
-        }
-        FailureKind::CannotSlide(causes, why) => {
-            let list: Vec<String> = causes.iter().map(|cause| format!("`{cause}`")).collect();
-            (
-                Code::Chattering,
-                format!(
-                    "both sides of {} lead back to it {at}, and {why}",
-                    list.join(" and ")
-                ),
-                "give the switch a hysteresis (two thresholds with a gap between them), or add a mode in which the state stays there",
-            )
-        }
-        FailureKind::Zeno { cause, sum_s } => (
-            Code::TooManyEvents,
-            format!(
-                "`{cause}` changes faster and faster {at} and would change infinitely often before about {} s",
-                hyde_units::significant(*sum_s, 7)
-            ),
-            "add a mode for rest that is entered below a small speed, such as `mode lying { v = 0; exit … }`",
-        ),
-        FailureKind::TooManyEvents { count, span_s } => (
-            Code::TooManyEvents,
-            format!(
-                "events come {count} times within {} s {at}",
-                hyde_units::significant(*span_s, 2)
-            ),
-            "add a mode in which the state rests where these conditions meet, such as `mode stuck { v = 0; exit … }`",
-        ),
-        FailureKind::Impact(name, from, to) => (
-            Code::ImpactOnPin,
-            format!(
-                "`{name}` jumps from {} to {} {at} as a mode fixes it",
-                hyde_units::significant(*from, 4),
-                hyde_units::significant(*to, 4)
-            ),
-            "if an impact is intended, write `impact` after the exit; otherwise leave the mode at rest",
-        ),
-        FailureKind::Overdetermined(fixed) => {
-            let list: Vec<String> = fixed
-                .iter()
-                .take(4)
-                .map(|name| format!("`{name}`"))
-                .collect();
-            (
-                Code::TooManyConditions,
-                match list.is_empty() {
-                    true => {
-                        "no start value that may change can satisfy an initial equation".to_owned()
-                    }
-                    false => format!(
-                        "an initial equation and the fixed start of {} determine the same",
-                        list.join(", ")
-                    ),
-                },
-                "remove the initial equation, or set `fixed = false` for a state that it is to determine",
-            )
-        }
-        FailureKind::Start(name, wanted, found) => (
-            Code::StartContradicted,
-            format!(
-                "`{name}` has the start value {}, but the other conditions require {}",
-                hyde_units::significant(*wanted, 6),
-                hyde_units::significant(*found, 6)
-            ),
-            "give consistent start values, or remove the one that follows from the others",
-        ),
-        FailureKind::Assert(message) => (
-            Code::AssertFailed,
-            format!("{message} ({at})"),
-            "change the motion or the limit",
-        ),
-        FailureKind::NoGradient(what) => (
-            Code::NoGradient,
-            format!("the gradient cannot be computed through {what}"),
-            "use differences of runs with `--set`, or remove it from the model",
-        ),
-        FailureKind::NotSteady(name, rate) => (
-            Code::SolverFailed,
-            format!(
-                "no steady state is reached {at}: `{name}` still changes by {} SI units per second",
-                hyde_units::significant(*rate, 3)
-            ),
-            "use a time of the run as the operating point: `--at '0.3 [s]'`",
-        ),
-        // Reported above.
-        FailureKind::Foreign { what, .. } => (Code::FmuFailed, what.clone(), ""),
-        FailureKind::Interrupted => (
-            Code::SolverFailed,
-            format!("the run was interrupted {at}"),
-            "the finished part is kept",
-        ),
-        FailureKind::Input(message) => (
-            Code::NoColumn,
-            message.clone(),
-            "give the record that contains it",
-        ),
-    };
-    let mut diagnostic = Diagnostic::error(code, message);
+    let mut diagnostic = of_kind(&failure.kind, &at);
     let mut seen = Vec::new();
     for origin in &failure.origins {
         if seen.contains(&origin.span) {
@@ -478,5 +273,46 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             hyde_units::significant(event.t, 7)
         ));
     }
-    diagnostic.help(help)
+    diagnostic
+}
+
+/// What went wrong, without the values there.
+fn of_kind(kind: &FailureKind, at: &str) -> Diagnostic {
+    let significant = hyde_units::significant;
+    match kind {
+        FailureKind::Inconsistent { singular, at_start } => {
+            let what = match at_start {
+                true => "no consistent initial conditions",
+                false => "no consistent values after an event",
+            };
+            match singular.as_slice() {
+                [] => refused::inconsistent(what, at),
+                singular => refused::singular(what, at, singular),
+            }
+        }
+        FailureKind::Solver(reason) => refused::solver_failed(at, reason),
+        FailureKind::NotFinite => refused::not_finite(at),
+        FailureKind::Chattering(causes) => refused::chattering(at, causes),
+        FailureKind::CannotSlide(causes, why) => refused::cannot_slide(at, causes, why),
+        FailureKind::Zeno { cause, sum_s } => {
+            refused::faster_and_faster(cause, at, &significant(*sum_s, 7))
+        }
+        FailureKind::TooManyEvents { count, span_s } => {
+            refused::too_many_events(*count, &significant(*span_s, 2), at)
+        }
+        FailureKind::Impact(name, from, to) => {
+            refused::impact(name, (&significant(*from, 4), &significant(*to, 4)), at)
+        }
+        FailureKind::Overdetermined(fixed) => refused::overdetermined(fixed),
+        FailureKind::Start(name, wanted, found) => {
+            refused::start_contradicted(name, &significant(*wanted, 6), &significant(*found, 6))
+        }
+        FailureKind::Assert(message) => refused::assert_failed(message, at),
+        FailureKind::NoGradient(what) => refused::no_gradient_through(what),
+        FailureKind::NotSteady(name, rate) => refused::not_steady(name, &significant(*rate, 3), at),
+        // Reported before.
+        FailureKind::Foreign { what, .. } => refused::fmu(what),
+        FailureKind::Interrupted => refused::interrupted(at),
+        FailureKind::Input(message) => refused::no_input(message),
+    }
 }

@@ -2,8 +2,9 @@
 
 use crate::modes::Prepared;
 use crate::ports::{chosen_outputs, is_input};
+use crate::refusals::responses as refused;
 use crate::{Fault, Refused, operating_point};
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_experiment::{About, Linear, LinearizeError, Poles, StateSpace, linearize_about, poles};
 use hyde_program::Program;
 
@@ -117,29 +118,14 @@ fn inputs(program: &Program, asked: &[String]) -> Result<Vec<String>, String> {
 }
 
 fn differentiated(program: &Program, input: &str) -> Diagnostic {
-    let message = format!(
-        "the equations need the time derivative of `{input}`, so a state space has no such input"
-    );
     let parameter = program.parameter(input);
-    let diagnostic = Diagnostic::error(Code::CannotExport, message);
-    let diagnostic = match parameter {
-        Some((parameter, _)) => {
-            diagnostic.label(parameter.origin.span, "differentiated in the model")
-        }
-        None => diagnostic,
-    };
-    diagnostic.help("name the other inputs with `--input`, or use that derivative as the input: for a prescribed motion the acceleration, with speed and position as its integrals")
+    let parameter = parameter.map(|(parameter, _)| parameter.origin.span);
+    refused::state_space_needs_derivative(input, parameter)
 }
 
 fn delayed(program: &Program) -> Diagnostic {
-    let message =
-        "a model with a `delay` has infinitely many states, and a state space finitely many";
-    let diagnostic = Diagnostic::error(Code::CannotExport, message);
-    let diagnostic = match program.delays.first() {
-        Some(delay) => diagnostic.label(delay.origin.span, "delayed here"),
-        None => diagnostic,
-    };
-    diagnostic.help("`hyde bode` has the exact response; for a state space write the delay as a rational function, or inside a `clocked` part as values of earlier ticks")
+    let delay = program.delays.first();
+    refused::delay_in_state_space(delay.map(|delay| delay.origin.span))
 }
 
 /// Why there is no linearised model, where that has a place in the file.
@@ -147,14 +133,9 @@ fn no_system(program: &Program, error: &LinearizeError) -> Option<Diagnostic> {
     match error {
         LinearizeError::DelayAndClock => Some(delayed(program)),
         LinearizeError::NoCommonPeriod | LinearizeError::LongDelay => {
-            let reason = operating_point::why_not(error);
-            let diagnostic = Diagnostic::error(Code::CannotExport, reason);
-            let diagnostic = match program.clocks.first() {
-                Some(clock) => diagnostic.label(clock.origin.span, "a clock of the loop"),
-                None => diagnostic,
-            };
-            let help = "choose periods that are multiples of one another and delays below a period, or export the plant alone with `--open`";
-            Some(diagnostic.help(help))
+            let why = operating_point::why_not(error);
+            let clock = program.clocks.first().map(|clock| clock.origin.span);
+            Some(refused::no_common_period(&why, clock))
         }
         LinearizeError::NoInput(_)
         | LinearizeError::TooLarge(_)

@@ -3,8 +3,9 @@
 use crate::asked::Asked;
 use crate::inputs::Kind;
 use crate::package::Roots;
+use crate::refusals::files as refused;
 use hyde_compiler::{File, TableFile};
-use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
+use hyde_diag::{Diagnostic, Diagnostics, Sources, Span};
 use hyde_signal::Layout;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
@@ -60,19 +61,13 @@ fn of_file(
             .data(importer, name)
             .map_err(|diagnostic| diagnostic.label(span, "named here"))?,
     };
-    let content =
-        asked
-            .read(Kind::Table, importer, name, &path)
-            .map_err(|reason| {
-                Diagnostic::error(Code::NotDeclared, format!("a table has no file: {reason}"))
-            .label(span, "named here")
-            .help("the path is relative to the folder of the manifest, or, without a manifest, to that of the model")
-            })?;
+    let content = asked
+        .read(Kind::Table, importer, name, &path)
+        .map_err(|reason| refused::no_table(&reason, span))?;
     // A table has no time: its rows are only counted.
     let table = hyde_signal::read_whole(&content, &Layout::every(1.0)).map_err(|error| {
-        Diagnostic::error(Code::BadRecord, format!("`{}`: {error}", path.display()))
-            .label(span, "read for this table")
-            .help(error.repair("file"))
+        let (why, repair) = (error.to_string(), error.repair("file"));
+        refused::unreadable_table(&path.display().to_string(), (&why, &repair), span)
     })?;
     let columns = table.columns().iter();
     let columns = columns.map(|column| {

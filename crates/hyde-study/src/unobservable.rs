@@ -1,9 +1,10 @@
 //! Diagnostics of studies that cannot be: records and models without an observer, and calibrations that learn nothing.
 
 use crate::calibration::Calibration;
+use crate::refusals::calibrations as refused;
 use crate::run_failure;
 use hyde_calibrate::{CalibrationPlan, Cause, RecordError, Unsupported};
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::{Diagnostic, Span};
 use hyde_units::{Dimension, engineering, engineering_difference, significant};
 
 /// Why a record cannot be observed.
@@ -51,12 +52,7 @@ pub fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
             "change the preparation of the column in the `measured` declaration",
         ),
     };
-    Diagnostic::error(
-        Code::CannotObserve,
-        format!("`{name}` cannot be observed: {cause}"),
-    )
-    .label(span, "asked for by this study")
-    .help(help)
+    refused::record_not_observed(name, (&cause, help), span)
 }
 
 /// Why a program has no fixed-step form.
@@ -80,12 +76,7 @@ pub fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
             "run its experiment first: `hyde run FILE`",
         ),
     };
-    Diagnostic::error(
-        Code::CannotObserve,
-        format!("the model cannot be observed: {cause}"),
-    )
-    .label(span, "asked for by this study")
-    .help(help)
+    refused::model_not_observed((&cause, help), span)
 }
 
 /// Why a calibration learned nothing of what it varied, by name; each cause with the experiment that it is of.
@@ -95,25 +86,14 @@ pub fn unlearned(
     causes: &[(&Calibration, &Cause)],
 ) -> Diagnostic {
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    let mut diagnostic = Diagnostic::error(
-        Code::NothingLearned,
-        format!(
-            "the calibration `{}` cannot determine any parameter: no innovation depends on {}",
-            plan.name,
-            names.join(", ")
-        ),
-    )
-    .label(plan.span, "asked for here");
-    for (calibration, cause) in causes {
-        diagnostic = diagnostic.note(reason(calibration, cause));
-    }
-    let held = causes
+    let still = causes
         .iter()
         .any(|(_, cause)| matches!(cause, Cause::Held { .. }));
-    diagnostic.help(match held {
-        true => "drive the model with the recorded input that moved the axis, `stimulus F = file.force;`, and declare a channel that moves as `measured`",
-        false => "record a motion that these parameters influence, or `vary` others",
-    })
+    let causes: Vec<String> = causes
+        .iter()
+        .map(|(own, cause)| reason(own, cause))
+        .collect();
+    refused::nothing_learned(&plan.name, plan.span, &names, &causes, still)
 }
 
 /// A cause in a sentence.

@@ -4,7 +4,7 @@
 use super::sources;
 
 /// The crates that declare all of their diagnostics.
-const DECLARING: &[&str] = &["analysis", "experiment", "flatten"];
+const DECLARING: &[&str] = &["analysis", "experiment", "flatten", "study"];
 
 #[test]
 fn no_algorithm_builds_a_diagnostic() {

@@ -4,11 +4,12 @@ use crate::asked::Asked;
 use crate::package::links_out;
 use crate::record_files;
 use crate::record_settings::{Given, called, split};
+use crate::refusals::files as refused;
 use crate::unobservable::unreadable;
 use crate::world::{World, matching};
 use hyde_calibrate::{Recording, Source};
 use hyde_compiler::Compiled;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use hyde_diag::{Diagnostic, Diagnostics, Span};
 use hyde_syntax::ast::Experiment;
 use hyde_units::counted;
 use std::collections::BTreeMap;
@@ -33,18 +34,13 @@ pub(super) fn files_of(
             .get(number)
             .map(|item| item.name.text.clone());
         let Some(record) = record.clone().or(own) else {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::BadStudy,
-                    format!(
-                        "`{}` has {}",
-                        source.experiment,
-                        counted(experiment.records.len(), "record")
-                    ),
-                )
-                .label(pattern.span, "no record is assigned to this pattern")
-                .help("name the record of the pattern: `fit bench(file = \"fit-*.csv\");`"),
-            );
+            let records = counted(experiment.records.len(), "record");
+            let own = &source.experiment;
+            diagnostics.push(crate::refusals::calibrations::pattern_of_no_record(
+                own,
+                &records,
+                pattern.span,
+            ));
             return Vec::new();
         };
         let whole = record_files::is_sum(&pattern.text);
@@ -73,54 +69,31 @@ pub(super) fn files_of(
             }
         };
         if matching.is_empty() {
-            let help = match asked.data {
-                None => "name the folder of the records: `--data DIR`",
-                Some(_) => "put such files there, or write another pattern",
-            };
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::NoFiles,
-                    format!("no file is called `{pattern}` in `{}`", shown(&folder)),
-                )
-                .label(*span, "asked for here")
-                .help(help),
-            );
+            let folder = shown(&folder);
+            diagnostics.push(refused::no_such_file(
+                (pattern, *span),
+                &folder,
+                asked.data.is_some(),
+            ));
             return Vec::new();
         }
         if let Some(path) = files
             .iter()
             .find(|path| links_out(asked.world.as_ref(), &folder, path))
         {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::NoRecord,
-                    format!(
-                        "`{}` is a link to a file outside its folder",
-                        path.display()
-                    ),
-                )
-                .label(
-                    *span,
-                    "only files below the model's folder or `--data` are read",
-                )
-                .help("move the file into the folder, or name its folder: `--data DIR`"),
-            );
+            diagnostics.push(refused::link_out_of_folder(
+                &path.display().to_string(),
+                *span,
+            ));
             return Vec::new();
         }
         let several = sets.len() > 1;
         if several && matching.len() != 1 && matching.len() != sets.len() {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::NoFiles,
-                    format!(
-                        "{} for one record and {} for another",
-                        counted(sets.len(), "file"),
-                        matching.len()
-                    ),
-                )
-                .label(*span, "asked for here")
-                .help("give every record the same number of files, or one file"),
-            );
+            diagnostics.push(refused::numbers_of_files(
+                &counted(sets.len(), "file"),
+                matching.len(),
+                *span,
+            ));
             return Vec::new();
         }
         let old = if sets.is_empty() {
@@ -164,14 +137,12 @@ pub(super) fn recording(
             .iter()
             .find(|item| item.name.text == *record);
         let Some(item) = item else {
-            let message = format!("`{}` has no record `{record}`", experiment.name.text);
-            return Err(Box::new(
-                Diagnostic::error(Code::BadStudy, message).label(span, "in this study"),
-            ));
+            let own = &experiment.name.text;
+            return Err(Box::new(refused::no_record_of_experiment(
+                own, record, span,
+            )));
         };
-        let wrong = |reason: String| {
-            Box::new(Diagnostic::error(Code::BadRecord, reason).label(span, "in this study"))
-        };
+        let wrong = |reason: String| Box::new(refused::unreadable_record(&reason, span));
         let text = path.to_string_lossy();
         let given = Given::of(world, record, &text).map_err(wrong)?;
         if name.is_empty() {
@@ -179,9 +150,7 @@ pub(super) fn recording(
         }
         let files = record_files::Files::named(world, Path::new(""), &given.path.to_string_lossy());
         let open = |file: &Path| world.read(file);
-        let missing = |reason: &str| {
-            Diagnostic::error(Code::NoFiles, reason.to_owned()).label(span, "in this study")
-        };
+        let missing = |reason: &str| refused::no_files(reason, span);
         let read = record_files::joined(item, given.settings.as_ref(), files, &open, &missing);
         let table = read.map_err(Box::new)?.table;
         tables.insert(record.clone(), table);

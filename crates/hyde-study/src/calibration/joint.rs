@@ -7,10 +7,11 @@ use super::{Calibration, Prepared, plan, prepared};
 use crate::asked::Asked;
 use crate::project::{Loaded, Records};
 use crate::record_settings::called;
+use crate::refusals::calibrations as refused;
 use crate::refused::{Fault, Refused};
 use crate::unobservable::unsupported;
 use hyde_calibrate::{CalibrationPlan, Joint, Observer, Part, Problem, Recording, Varied};
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_sim::Reached;
 use hyde_syntax::ast::Experiment;
 use std::ops::Range;
@@ -291,18 +292,12 @@ fn record_sets(
                     .find(|own| own.files == files && own.holdout == holdout);
                 if let Some(known) = known {
                     let word = if holdout { "holdout" } else { "fit" };
-                    loaded.diagnostics.push(
-                        Diagnostic::error(
-                            Code::BadStudy,
-                            format!(
-                                "the record `{name}` of `{}` is named twice, and would count twice",
-                                experiment.name.text
-                            ),
-                        )
-                        .label(source.span, "again here")
-                        .label(known.span, "first here")
-                        .help(format!("name each record in one `{word}` only")),
-                    );
+                    loaded.diagnostics.push(refused::record_twice(
+                        (&name, &experiment.name.text),
+                        known.span,
+                        source.span,
+                        word,
+                    ));
                     return found;
                 }
                 found.push(RecordSet {

@@ -2,8 +2,9 @@
 //! records.
 
 use super::vary::Own;
+use crate::refusals::calibrations as refused;
 use hyde_calibrate::{Label, LabelValue, Per, Varied};
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::{Diagnostic, Span};
 use hyde_program::Program;
 use hyde_units::significant;
 use std::path::PathBuf;
@@ -174,69 +175,22 @@ fn value(rows: &Rows<'_>, set: &RecordSet, label: &str) -> Option<(LabelValue, S
 }
 
 fn without_value(own: &Varied, per: &Per, set: &RecordSet) -> Diagnostic {
-    let label = &per.label;
-    Diagnostic::error(
-        Code::BadStudy,
-        format!("`{}` has a value for each `{label}`, and `{}` has no `{label}`", own.name, set.name),
-    )
-    .label(set.span, format!("the value of `{label}` of these records is missing"))
-    .label(per.span, "a value each")
-    .help(format!(
-        "write it behind the records: `fit bench(\"full-*.csv\") at {label} = 200 [kg];`; without a label there are `per record` and `per experiment`"
-    ))
+    refused::no_label((&own.name, &per.label), (&set.name, set.span), per.span)
 }
 
 fn one_value(own: &Varied, per: &Per, only: Option<&Number>) -> Diagnostic {
     let value = only.and_then(|only| only.local.as_ref());
-    let value = value.map_or_else(String::new, |local| format!(", `{}`", local.value));
-    Diagnostic::error(
-        Code::BadStudy,
-        format!(
-            "`{}` has a value for each `{}`, and all records have the same{value}",
-            own.name, per.label
-        ),
-    )
-    .label(per.span, "one value only")
-    .help(format!(
-        "leave `per {}` out, or name records with another value of it",
-        per.label
-    ))
+    let value = value.map(|local| local.value.to_string());
+    refused::same_label((&own.name, &per.label), per.span, value.as_deref())
 }
 
 fn not_fitted(own: &Varied, per: &Per, set: &RecordSet, value: Option<String>) -> Diagnostic {
-    let label = &per.label;
-    let (message, help) = match value {
-        Some(_) if label == "record" => (
-            format!(
-                "`{}` has a value for each record, and `{}` is held out",
-                own.name, set.name
-            ),
-            format!(
-                "name the condition that fitted and held-out records share: `fit bench(\"a-*.csv\") at load = 200 [kg]; holdout bench(\"b-*.csv\") at load = 200 [kg]; vary {} per load;`",
-                own.name
-            ),
-        ),
-        Some(value) => (
-            format!(
-                "`{}` has a value for each `{label}`, and no fitted record has `{value}`",
-                own.name
-            ),
-            format!("hold out records with a value of `{label}` that is fitted"),
-        ),
-        None => (
-            format!(
-                "`{}` has a value for each `{label}`, and `{}` has no `{label}`",
-                own.name, set.name
-            ),
-            format!(
-                "write it behind the records: `holdout bench(\"c-*.csv\") at {label} = 200 [kg];`"
-            ),
-        ),
-    };
-    Diagnostic::error(Code::BadStudy, message)
-        .label(set.span, "held out here")
-        .label(per.span, "a value each")
-        .help(help)
+    let (names, set) = ((&*own.name, &*per.label), (&*set.name, set.span));
+    match value {
+        Some(_) if per.label == "record" => refused::each_record_held_out(&own.name, set, per.span),
+        Some(value) => refused::label_not_fitted(names, &value, set.1, per.span),
+        None => refused::no_label_held_out(names, set, per.span),
+    }
 }
 
 /// A parameter of two experiments is one number only if it is the same quantity; its first declaration counts.
@@ -255,22 +209,12 @@ fn same_declaration(
     if of(first) != of(rows) {
         let unit = |rows: &Rows<'_>| of(rows).map_or_else(String::new, |own| own.usual_unit());
         let span = rows.sets.first().map(|set| set.span);
-        let diagnostic = Diagnostic::error(
-            Code::CannotVary,
-            format!(
-                "`{}` is in {} in `{}` and in {} in `{}`",
-                own.name,
-                unit(first),
-                first.model,
-                unit(rows),
-                rows.model
-            ),
-        )
-        .help("parameters with one name are one parameter: rename one of them");
-        wrong.push(match span {
-            Some(span) => diagnostic.label(span, "records of both models"),
-            None => diagnostic,
-        });
+        wrong.push(refused::units_differ(
+            &own.name,
+            (&unit(first), first.model),
+            (&unit(rows), rows.model),
+            span,
+        ));
         return;
     }
     let same = known.nominal.to_bits() == own.nominal.to_bits()

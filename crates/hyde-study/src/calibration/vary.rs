@@ -1,7 +1,8 @@
 //! What a calibration may vary of a model, by name.
 
+use crate::refusals::calibrations as refused;
 use hyde_calibrate::{CalibrationPlan, Per, Varied, Vary};
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_program::{Given, Program};
 
 /// A parameter of a model that a calibration varies, and of what it has a value each.
@@ -21,14 +22,7 @@ pub(super) fn varied(
             Vary::Uncertain(span) => {
                 let uncertain = Varied::uncertain(program, p);
                 if uncertain.is_empty() && !elsewhere(None) {
-                    wrong.push(
-                        Diagnostic::error(
-                            Code::CannotVary,
-                            "no parameter of the model is uncertain",
-                        )
-                        .label(*span, "asked for here")
-                        .help("declare the uncertainty of a parameter: `parameter Mass M = 310 [kg] ~ ±8%;`"),
-                    );
+                    wrong.push(refused::nothing_uncertain(*span));
                 }
                 found.extend(uncertain.into_iter().map(|own| (own, None)));
             }
@@ -60,11 +54,7 @@ pub(super) fn varied(
                     }),
                 };
                 if let Some(problem) = problem {
-                    wrong.push(
-                        Diagnostic::error(Code::CannotVary, format!("`{name}` cannot be varied"))
-                            .label(*span, problem)
-                            .help("`hyde params FILE` lists the parameters"),
-                    );
+                    wrong.push(refused::cannot_vary(name, *span, &problem));
                 }
                 if let Some((from, to, _)) = bounds {
                     own.iter_mut()

@@ -5,6 +5,7 @@ use crate::asked::Asked;
 use crate::calibration::{Prepared, chosen, prepared, single_plan};
 use crate::project::{Loaded, Project};
 use crate::records::{Record, headers};
+use crate::refusals::calibrations as refused;
 use crate::refused::{Fault, Refused};
 use crate::run_failure;
 use crate::unobservable::{unreadable, unsupported};
@@ -13,7 +14,7 @@ use hyde_calibrate::{
     Unsupported, Varied, simulated,
 };
 use hyde_compiler::{Compiled, Form};
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_experiment::Options;
 use hyde_program::Program;
 use hyde_signal::{Column, Table};
@@ -122,19 +123,7 @@ pub fn bench(
         mut diagnostics,
     } = loaded;
     if column.is_none() {
-        diagnostics.push(
-            Diagnostic::error(
-                Code::BadStudy,
-                format!(
-                    "no stimulus of `{}` reads a column that is not measured",
-                    experiment.name.text
-                ),
-            )
-            .label(plan.span, "requested by this study")
-            .help(
-                "a record is designed for a column that drives the model: `stimulus r = file.r;`",
-            ),
-        );
+        diagnostics.push(refused::nothing_to_design(&experiment.name.text, plan.span));
     }
     let project = Project {
         sources,
@@ -362,12 +351,9 @@ impl Bench {
             Failed::Simulated(Simulated::Run(error)) => {
                 run_failure::diagnostic(error, &self.recorded, None).0
             }
-            Failed::Simulated(Simulated::Column(record, column)) => Diagnostic::error(
-                Code::CannotObserve,
-                format!("no channel determines the column `{record}.{column}`"),
-            )
-            .label(span, "requested by this study")
-            .help("every recorded column needs its `measured` or `replay`, and no `slope` alone"),
+            Failed::Simulated(Simulated::Column(record, column)) => {
+                refused::no_channel(record, column, span)
+            }
             Failed::Record(error) => unreadable(name, error, span),
             Failed::Unsupported(error) => unsupported(error, span),
         }

@@ -13,8 +13,9 @@
 //! ```
 
 use super::{MANIFEST, is_inside, links_out};
+use crate::refusals::packages as refused;
 use crate::world::{World, read_text};
-use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -77,7 +78,7 @@ pub(super) fn read(
     let text = match read_text(world, &path) {
         Ok(text) => text,
         Err(reason) => {
-            diagnostics.push(Diagnostic::error(Code::BadManifest, reason));
+            diagnostics.push(refused::unreadable_manifest(&reason));
             return None;
         }
     };
@@ -110,20 +111,16 @@ struct Reader<'r> {
 impl Reader<'_> {
     fn checked(&mut self, written: Written) -> Manifest {
         if !is_name(written.name.get_ref()) {
-            self.wrong(
-                &written.name,
-                format!("`{}` is not a name", written.name.get_ref()),
-                "a name consists of letters, digits and `_`, with dots between words",
-            );
+            let span = self.span(&written.name);
+            self.diagnostics
+                .push(refused::not_a_name(written.name.get_ref(), span));
         }
         let version = written.version.get_ref().split('.');
         let numbers = version.map(str::parse::<u32>).collect::<Vec<_>>();
         if numbers.len() != 3 || numbers.iter().any(Result::is_err) {
-            self.wrong(
-                &written.version,
-                format!("`{}` is not a version", written.version.get_ref()),
-                "a version consists of three numbers: `0.1.0`",
-            );
+            let span = self.span(&written.version);
+            self.diagnostics
+                .push(refused::not_a_version(written.version.get_ref(), span));
         }
         for folder in &written.folders {
             self.below(folder, true);
@@ -133,11 +130,8 @@ impl Reader<'_> {
         }
         let dependencies = written.dependencies.into_iter().map(|(name, path)| {
             if Path::new(path.get_ref()).is_absolute() {
-                self.wrong(
-                    &path,
-                    format!("the path to `{name}` is absolute"),
-                    "write it relative to this manifest: an absolute path differs from machine to machine",
-                );
+                let span = self.span(&path);
+                self.diagnostics.push(refused::absolute_path(&name, span));
             }
             Dependency {
                 name,
@@ -168,31 +162,18 @@ impl Reader<'_> {
         let written = path.get_ref();
         let place = self.folder.join(written);
         if !is_inside(written) || links_out(self.world, self.folder, &place) {
-            let diagnostic = Diagnostic::error(
-                Code::NotDeclared,
-                format!("`{written}` is outside the folder of the package"),
-            )
-            .label(self.span(path), "outside")
-            .help("put it below the manifest; the packages of other folders are `[dependencies]`");
-            self.diagnostics.push(diagnostic);
+            let span = self.span(path);
+            self.diagnostics
+                .push(refused::outside_package(written, span));
         } else if !(match folder {
             true => self.world.is_folder(&place),
             false => self.world.is_file(&place),
         }) {
             let what = if folder { "folder" } else { "file" };
-            self.wrong(
-                path,
-                format!("there is no {what} `{written}`"),
-                "paths are relative to the manifest's folder",
-            );
+            let span = self.span(path);
+            self.diagnostics
+                .push(refused::nothing_there(written, span, what));
         }
-    }
-
-    fn wrong(&mut self, at: &Spanned<String>, message: String, help: &str) {
-        let diagnostic = Diagnostic::error(Code::BadManifest, message)
-            .label(self.span(at), "in this manifest")
-            .help(help);
-        self.diagnostics.push(diagnostic);
     }
 
     fn span(&self, at: &Spanned<String>) -> Span {
@@ -203,36 +184,19 @@ impl Reader<'_> {
 impl Dependency {
     /// There is no package where the dependency says.
     pub(super) fn missing(&self, folder: &Path) -> Diagnostic {
-        Diagnostic::error(
-            Code::BadManifest,
-            format!("there is no `{}`", folder.join(MANIFEST).display()),
-        )
-        .label(
-            self.span,
-            format!("the package `{}` should be there", self.name),
-        )
-        .help("the path leads from this manifest's folder to the folder of the other manifest")
+        refused::no_manifest(&folder.join(MANIFEST), &self.name, self.span)
     }
 
     /// The package there has another name.
     pub(super) fn other_name(&self, name: &str) -> Diagnostic {
-        Diagnostic::error(
-            Code::BadManifest,
-            format!("the package there is called `{name}`"),
-        )
-        .label(self.span, format!("not `{}`", self.name))
-        .help(format!("write `\"{name}\" = \"{}\"`", self.path))
+        refused::other_name(name, (&self.name, &self.path), self.span)
     }
 }
 
 fn not_understood(id: FileId, error: &toml::de::Error) -> Diagnostic {
     let span = error.span().unwrap_or(0..0);
     let message = error.message().lines().next().unwrap_or_default();
-    Diagnostic::error(Code::BadManifest, format!("the manifest cannot be read: {message}"))
-        .label(Span::new(id, span.start, span.end), "here")
-        .help(
-            "a manifest has `name`, `version`, and as needed `description`, `licence`, `folders`, `data`, `[dependencies]`",
-        )
+    refused::bad_manifest(message, Span::new(id, span.start, span.end))
 }
 
 fn is_name(name: &str) -> bool {

@@ -2,7 +2,8 @@
 
 use crate::Project;
 use crate::operating_point;
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use crate::refusals::responses as refused;
+use hyde_diag::{Diagnostic, Diagnostics};
 use hyde_experiment::{About, CutError, Linear, Margins, Pole, linearize_about, margins, poles};
 use hyde_program::{Constant, Cut, Program};
 use hyde_signal::Table;
@@ -80,33 +81,24 @@ fn one(
     (asked, modes): (Option<&str>, &[(usize, usize)]),
 ) -> Result<OfLoop, Box<Diagnostic>> {
     if program.experiment.differentiated.contains(&cut.input) {
-        let message = format!(
-            "the loop needs the derivative of `{}` by the time, which a test signal does not have",
-            cut.signal
-        );
-        let help = "open the loop at another signal: at the output of the controller, or before the differentiation";
-        let diagnostic = Diagnostic::error(Code::CannotCut, message);
-        let diagnostic = diagnostic.label(cut.origin.span, "differentiated by what reads it");
-        return Err(Box::new(diagnostic.help(help)));
+        let needs = refused::loop_needs_derivative(&cut.signal, cut.origin.span);
+        return Err(Box::new(needs));
     }
     let input = std::slice::from_ref(&cut.input);
     let constant = |which| program.kernels.constant(which, p);
     let time = operating_point::moment(asked, cut.at, constant(Constant::CutAt(number)));
-    let time = time.map_err(|reason| {
-        let diagnostic = Diagnostic::error(Code::NoResponse, reason);
-        Box::new(diagnostic.label(cut.origin.span, "linearised there"))
-    })?;
+    let time = time.map_err(|reason| Box::new(refused::no_moment(&reason, cut.origin.span)))?;
     let about = About {
         time,
         modes: &[modes, &cut.modes].concat(),
         ..About::default()
     };
     let linear = linearize_about(program, tables, p, input, about).map_err(|error| {
-        let diagnostic = Diagnostic::error(Code::NoResponse, operating_point::why_not(&error));
-        Box::new(diagnostic.label(cut.origin.span, "the loop has no response here"))
+        let why = operating_point::why_not(&error);
+        Box::new(refused::loop_without_response(&why, cut.origin.span))
     })?;
     let band = constant(Constant::SearchedFrom(number)).zip(constant(Constant::SearchedTo(number)));
-    let found = margins(program, &linear, cut, band).map_err(|error| refused(cut, error))?;
+    let found = margins(program, &linear, cut, band).map_err(|error| cannot_cut(cut, error))?;
     Ok(OfLoop {
         experiment: experiment.to_owned(),
         signal: cut.signal.clone(),
@@ -118,52 +110,14 @@ fn one(
     })
 }
 
-fn refused(cut: &Cut, error: CutError) -> Box<Diagnostic> {
-    let signal = &cut.signal;
-    let (code, message, label, help) = match error {
-        CutError::SampledLoop => (
-            Code::CannotCut,
-            format!(
-                "`{signal}` is continuous, but clocks close its loop: it has no single open-loop response"
-            ),
-            "continuous, in a sampled loop",
-            "cut where the loop is sampled: at a clocked variable, or at a signal that is `hold(…)` of one",
-        ),
-        CutError::SlowerClock => (
-            Code::CannotCut,
-            format!(
-                "`{signal}` is in a loop with a slower clock: its response differs from tick to tick"
-            ),
-            "sampled faster than its loop",
-            "cut at a signal of the slowest clock of the loop, or open the outer loop: set its gain to 0",
-        ),
-        CutError::Reversed => (
-            Code::CannotCut,
-            format!(
-                "the equation of `{signal}` does not determine it: other equations do, so its direction is not defined"
-            ),
-            "no signal with a direction",
-            "cut at a signal of the loop: an input, an output or a clocked variable; or let the loop read one: `Angle measured = rotor.phi;`",
-        ),
-        CutError::NotHeld => (
-            Code::CannotCut,
-            format!("no clocked part is held: `{signal}` drives nothing"),
-            "in no loop",
-            "cut at a signal whose value the model reads",
-        ),
-        CutError::EmptyBand => (
-            Code::NoResponse,
-            "the band of frequencies is empty".to_owned(),
-            "nothing to search",
-            "write `over 1 .. 500 [Hz]`, of a sampled loop below half its rate",
-        ),
-        CutError::Singular(f) => (
-            Code::NoResponse,
-            format!("the loop is singular at {} Hz", significant(f, 3)),
-            "no response there",
-            "search beside it: `over 1 .. 500 [Hz]`",
-        ),
-    };
-    let diagnostic = Diagnostic::error(code, message);
-    Box::new(diagnostic.label(cut.origin.span, label).help(help))
+fn cannot_cut(cut: &Cut, error: CutError) -> Box<Diagnostic> {
+    let (signal, span) = (&cut.signal, cut.origin.span);
+    Box::new(match error {
+        CutError::SampledLoop => refused::sampled_loop(signal, span),
+        CutError::SlowerClock => refused::slower_clock(signal, span),
+        CutError::Reversed => refused::no_direction(signal, span),
+        CutError::NotHeld => refused::nothing_held(signal, span),
+        CutError::EmptyBand => refused::empty_band(span),
+        CutError::Singular(f) => refused::singular_loop(&significant(f, 3), span),
+    })
 }

@@ -1,6 +1,7 @@
 //! Measured frequency responses beside those of the model.
 
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::responses as refused;
+use hyde_diag::Diagnostic;
 use hyde_experiment::{
     Linear, MeasuredCurve, Run, curve_of_run, frequency_response, measured_curve,
 };
@@ -34,10 +35,8 @@ pub fn curves(
     let skip_s = program.kernels.constant(Constant::Skip, p).unwrap_or(0.0);
     let of = |measured: &MeasuredResponse| {
         let curve = measured_curve(measured, tables, skip_s).map_err(|error| {
-            let (name, cause) = (error.channel, error.cause);
-            let message = format!("the response `{name}` cannot be compared: {cause}");
-            let diagnostic = Diagnostic::error(Code::BadResponse, message);
-            Box::new(diagnostic.label(measured.origin.span, "measured here"))
+            let (why, span) = (error.cause.to_string(), measured.origin.span);
+            Box::new(refused::cannot_compare_response(&error.channel, &why, span))
         })?;
         Ok(match super::response::band(program, measured.place.0, p) {
             Some((from, to)) => curve.between(from, to),

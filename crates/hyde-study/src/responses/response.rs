@@ -1,7 +1,8 @@
 //! One response of an experiment: of the linearised model, and as measured on the hybrid one.
 
 use super::measured::Compared;
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals::responses as refused;
+use hyde_diag::Diagnostic;
 use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response_watched};
 use hyde_program::{Bode, Constant, Program};
 use hyde_signal::spectrum::FrequencyResponse;
@@ -92,14 +93,7 @@ pub fn linearised(
 
 /// The equations differentiate the input, of which the linearised system knows the value alone.
 pub fn no_rate(bode: &Bode) -> Diagnostic {
-    let message = format!(
-        "the equations need the time derivative of `{}`, so its response is not defined",
-        bode.input
-    );
-    let help = "use that derivative as the input: for a prescribed motion the acceleration, with speed and position as its integrals";
-    Diagnostic::error(Code::NoResponse, message)
-        .label(bode.origin.span, "differentiated in the model")
-        .help(help)
+    refused::response_needs_derivative(&bode.input, bode.origin.span)
 }
 
 /// The modes that swing, from an octave below the band to its end: with clocks those of the closed loop.

@@ -2,10 +2,11 @@
 
 use super::Ended;
 use super::kept::{self, Kept};
+use crate::refusals::calibrations as refused;
 use crate::unobservable;
 use crate::{Progress, Store};
 use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
-use hyde_diag::{Code, Diagnostic, Span};
+use hyde_diag::{Diagnostic, Span};
 use hyde_experiment::RunError;
 use hyde_units::significant;
 use rayon::prelude::*;
@@ -99,10 +100,5 @@ pub(super) fn cannot(error: &SelftestError, span: Span) -> Diagnostic {
     if let SelftestError::Unsupported(error) = error {
         return unobservable::unsupported(error, span);
     }
-    Diagnostic::error(
-        Code::CannotObserve,
-        format!("records of this axis cannot be simulated: {}", reason(error)),
-    )
-    .label(span, "asked for by this study")
-    .help("run its experiment first: `hyde run FILE`; every recorded column needs its `measured` or `replay`")
+    refused::cannot_simulate(&reason(error), span)
 }

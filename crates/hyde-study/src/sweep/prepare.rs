@@ -2,12 +2,13 @@
 
 use super::order::{Order, Parts};
 use super::variants::{Source, Variants};
+use crate::refusals::runs as refusals;
 use crate::settings::Setting;
 use crate::store::Store;
 use crate::{
     Asked, Fault, Kind, Loaded, Project, Records, Refused, assumptions, is_inside, run_failure,
 };
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::Diagnostic;
 use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files, shards, varied};
 use hyde_syntax::ast::{Study, StudyKind};
 use std::path::Path;
@@ -98,23 +99,14 @@ impl Prepared {
         let dataset = match Dataset::new(&ready.program, &draft.keep) {
             Ok(dataset) => dataset,
             Err(name) => {
-                let diagnostic = Diagnostic::error(Code::BadSweep, format!("`keep {name}`: there is no such variable"))
-                    .label(study.name.span, "in this sweep")
-                    .help("the results of `hyde run --out DIR` list all variables; `keep guide.*;` keeps those of a component");
+                let diagnostic = refusals::keeps_nothing(&name, study.name.span);
                 return Err(refused(project, diagnostic));
             }
         };
         read_all_records(&source).map_err(at_fault)?;
         if dataset.measures.is_empty() && dataset.kept.is_empty() {
-            let diagnostic = Diagnostic::warning(
-                Code::BadSweep,
-                "the experiment has no `measure`, and the sweep keeps no variable",
-            )
-            .label(
-                study.of.span,
-                "write `measure Length peak = max(abs(e));` there",
-            );
-            project.diagnostics.push(diagnostic);
+            let warning = refusals::measures_nothing(study.of.span);
+            project.diagnostics.push(warning);
         }
         let inputs = asked.inputs.clone().unwrap_or_default();
         let notes = assumptions::of_model(&project, &ready.program, &parameters);
