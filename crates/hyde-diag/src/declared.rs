@@ -1,6 +1,7 @@
 //! [`diagnostics!`](crate::diagnostics): declares diagnostics as data, away from the algorithms that report them.
 
-/// Declares functions that make a [`Diagnostic`](crate::Diagnostic): severity and [`Code`](crate::Code), message, and parts.
+/// Declares functions that make a [`Diagnostic`](crate::Diagnostic): severity (`error` or `warning`) and
+/// [`Code`](crate::Code), message, and parts.
 ///
 /// ```
 /// use hyde_diag::{Sources, Span, diagnostics};
@@ -38,12 +39,8 @@ macro_rules! diagnostics {
         $made = $made.label($span, format!($text $(, $value)*));
         $crate::diagnostics!(@parts $made; $($rest)*);
     };
-    (@parts $made:ident; note $text:literal $(, $value:expr)* $(,)?; $($rest:tt)*) => {
-        $made = $made.note(format!($text $(, $value)*));
-        $crate::diagnostics!(@parts $made; $($rest)*);
-    };
-    (@parts $made:ident; help $text:literal $(, $value:expr)* $(,)?; $($rest:tt)*) => {
-        $made = $made.help(format!($text $(, $value)*));
+    (@parts $made:ident; $part:ident $text:literal $(, $value:expr)* $(,)?; $($rest:tt)*) => {
+        $made = $made.$part(format!($text $(, $value)*));
         $crate::diagnostics!(@parts $made; $($rest)*);
     };
     (@parts $made:ident; match $value:ident $($rest:tt)*) => {
