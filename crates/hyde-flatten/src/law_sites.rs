@@ -278,13 +278,10 @@ fn held_site(
     if let Some(Member::Variable(var)) = tree[id].members.get(word) {
         let own = flat.variables[*var].quantity.dimension;
         if own.agreement(dimension) == Agreement::Different {
-            let hold = (value.span, own.usual_unit());
-            let wanted = dimension.usual_unit();
-            return Err(wrong(refused::holds_another_dimension(
-                word,
-                (hold.0, &hold.1),
-                &wanted,
-            )));
+            let (unit, wanted) = (own.usual_unit(), dimension.usual_unit());
+            let hold = (value.span, unit.as_str());
+            let refused = refused::holds_another_dimension(word, hold, &wanted);
+            return Err(wrong(refused));
         }
     }
     Ok(word.to_owned())

@@ -14,7 +14,6 @@ pub(crate) fn no_place(tree: &InstanceTree<'_>, scope: InstanceId, site: &Refere
     for part in &site.parts {
         let name = part.name.text.as_str();
         let span = part.name.span;
-
         let found = match tree[at].members.get(name) {
             Some(Member::Instance(inner)) if part.subscripts.is_empty() => {
                 at = *inner;
@@ -73,8 +72,8 @@ pub(crate) fn does_not_fit(
     };
     let own = &tree[host].class.name.text;
     let parts = names.parts_that_are((tree[host].file, tree[host].class), class);
-    let on = (written(site), own.as_str(), site.span);
-    refused::does_not_fit(&effect.name.text, wanted, (&on.0, on.1, on.2), &parts)
+    let (path, name) = (written(site), &effect.name.text);
+    refused::does_not_fit(name, wanted, (&path, own, site.span), &parts)
 }
 
 /// `add a.f = e;` of an effect that is not on a connector.

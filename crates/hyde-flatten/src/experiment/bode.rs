@@ -146,7 +146,6 @@ fn mode_of(
             .iter()
             .map(|automaton| automaton.name.as_str())
             .collect();
-
         diagnostics.push(refused::no_modes(name, &known));
         return None;
     };
@@ -160,7 +159,6 @@ fn mode_of(
             .iter()
             .map(|mode| mode.name.as_str())
             .collect();
-
         diagnostics.push(refused::no_mode(&path, mode, &known));
     }
     Some((id, number?))

@@ -43,7 +43,6 @@ pub(super) fn stepped<'a>(
         let name = argument.name.as_ref();
         if !name.is_some_and(|name| OPTIONS.contains(&name.text.as_str())) {
             let span = name.map_or(argument.value.span, |name| name.span);
-
             model.report(refused::unknown_option_of_steps(span, &OPTIONS));
             return None;
         }

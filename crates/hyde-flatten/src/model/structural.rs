@@ -106,7 +106,6 @@ impl<'a> Model<'a, '_> {
         let parameter = &mut self.flat.parameters[param];
         if structural && parameter.found {
             let (name, span) = (parameter.name.clone(), parameter.origin.span);
-
             self.report(refused::found_at_start(&name, span));
             return None;
         }

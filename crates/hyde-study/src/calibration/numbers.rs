@@ -185,11 +185,13 @@ fn one_value(own: &Varied, per: &Per, only: Option<&Number>) -> Diagnostic {
 }
 
 fn not_fitted(own: &Varied, per: &Per, set: &RecordSet, value: Option<String>) -> Diagnostic {
-    let (names, set) = ((&*own.name, &*per.label), (&*set.name, set.span));
+    let (names, here) = ((&*own.name, &*per.label), set.span);
     match value {
-        Some(_) if per.label == "record" => refused::each_record_held_out(&own.name, set, per.span),
-        Some(value) => refused::label_not_fitted(names, &value, set.1, per.span),
-        None => refused::no_label_held_out(names, set, per.span),
+        Some(_) if per.label == "record" => {
+            refused::each_record_held_out(&own.name, (&set.name, here), per.span)
+        }
+        Some(value) => refused::label_not_fitted(names, &value, here, per.span),
+        None => refused::no_label_held_out(names, (&set.name, here), per.span),
     }
 }
 

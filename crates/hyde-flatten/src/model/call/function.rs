@@ -110,7 +110,6 @@ impl<'a> Model<'a, '_> {
             self.calls.count = 0;
         }
         self.calls.count += 1;
-
         if within.iter().any(|&known| std::ptr::eq(known, class)) {
             self.report(refused::calls_itself(&class.name));
             return false;

@@ -146,7 +146,6 @@ impl<'a> Model<'a, '_> {
             && (self.varies(a.id) || self.varies(b.id))
         {
             let sign = if op == BinaryOp::Eq { "==" } else { "<>" };
-
             self.report(refused::compared_for_equality(sign, span));
         }
         let id = self.flat.exprs.binary(op, a.id, b.id);
