@@ -17,6 +17,7 @@ mod nesting;
 mod other_names;
 mod parse;
 mod recover;
+mod refusals;
 mod slips;
 mod words;
 mod written;

@@ -18,8 +18,8 @@ use crate::ast;
 use crate::grammar::{self, Rule};
 use crate::matcher::Pairs;
 use crate::written::{Node, Part, Written};
-use crate::{forms, habits, matcher, nesting, recover, slips, words};
-use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use crate::{forms, habits, matcher, nesting, recover, refusals, slips, words};
+use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 
 /// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
 pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> ast::File {
@@ -79,9 +79,7 @@ pub fn parse_record(
     let pairs = parser.expect(Rule::record)?;
     if parser.more() {
         let span = Span::new(file, parser.at, text.trim_end().len());
-        let message = "the declaration of the record ends before this";
-        let diagnostic = Diagnostic::error(Code::Syntax, message).label(span, "not known here");
-        parser.diagnostics.push(diagnostic);
+        parser.diagnostics.push(refusals::more_behind_record(span));
         return None;
     }
     let node = pairs.into_iter().next()?;
@@ -92,20 +90,10 @@ pub fn parse_record(
 fn without_end(text: &str, file: FileId) -> Option<Diagnostic> {
     let (at, opened) = recover::without_end(text)?;
     let span = Span::new(file, at, at + opened.len());
-    let (what, help) = if opened == "\"" {
-        (
-            "text",
-            "end it with `\"`; if it has an end, an earlier text is not closed",
-        )
-    } else {
-        ("comment", "end it with `*/`")
-    };
-    let message = format!("this {what} goes on to the end of the file");
-    Some(
-        Diagnostic::error(Code::Syntax, message)
-            .label(span, "begins here")
-            .help(help),
-    )
+    Some(match opened {
+        "\"" => refusals::text_without_end(span),
+        _ => refusals::comment_without_end(span),
+    })
 }
 
 /// The state of parsing one file: how far it got.
@@ -205,17 +193,7 @@ impl<'a> Parser<'a> {
             return false;
         }
         let span = Span::new(self.file, place, place + 1);
-        self.diagnostics.push(
-            Diagnostic::error(
-                Code::TooDeep,
-                "this statement is nested too deeply or too long",
-            )
-            .label(
-                span,
-                "the limit of 60 nested brackets or 500 operators is exceeded here",
-            )
-            .help("give parts of it separate names: `Real part = …;`"),
-        );
+        self.diagnostics.push(refusals::too_deep(span));
         self.at = end;
         true
     }
@@ -247,50 +225,38 @@ impl<'a> Parser<'a> {
             && expected == format!("`{word}`")
         {
             let opened = Span::new(self.file, start, start + word.len());
-            return Diagnostic::error(Code::Syntax, format!("this `{word}` is not ended"))
-                .label(opened, "begins here")
-                .label(span, format!("expected `end {word};`"))
-                .help(format!("write `end {word};`"));
+            return refusals::block_without_end(word, opened, span);
         }
         let found = found.map_or("the end of the file".to_owned(), |(_, token)| {
             format!("`{token}`")
         });
         if let Some(found) = habits::find(self.text, start, begin) {
             let span = Span::new(self.file, found.begin, found.end);
-            return Diagnostic::error(Code::Syntax, found.habit.message)
-                .label(span, "not a part of the language")
-                .help(found.habit.help);
+            return refusals::habit_of_another_language(found.habit, span);
         }
         let slip = slips::find(self.text, start, begin, &expected);
         // What is missing belongs behind the word before, not in front of the next line.
         let missing = slip
             .as_ref()
             .and_then(|slip| Some((slip.missing?, slip.behind?)));
-        let (span, label, found) = match missing {
-            Some((sign, behind)) => {
+        let (span, found) = match missing {
+            Some((_, behind)) => {
                 let next = recover::Scanner::new(self.text, behind).next();
                 let found = next.map_or(found, |(_, token)| format!("`{token}`"));
-                let label = format!("{sign} is missing here");
-                (Span::new(self.file, behind, behind), label, found)
+                (Span::new(self.file, behind, behind), found)
             }
-            None => (span, "not understood from here on".to_owned(), found),
+            None => (span, found),
         };
         let expected = slip
             .as_ref()
             .and_then(|slip| slip.missing)
             .unwrap_or(&expected);
         if slip.is_none() && expected.contains("a name") && words::is_reserved(&found) {
-            return Diagnostic::error(Code::Syntax, format!("{found} cannot be a name"))
-                .label(span, "this is a keyword of the language")
-                .help("choose another name");
+            return refusals::keyword_as_name(&found, span);
         }
-        let diagnostic =
-            Diagnostic::error(Code::Syntax, format!("expected {expected}, found {found}"))
-                .label(span, label);
-        let help = slip.map(|slip| slip.help);
-        match help.or_else(|| forms::of(&self.text[start..])) {
-            Some(help) => diagnostic.help(help),
-            None => diagnostic,
-        }
+        let missing = missing.map(|(sign, _)| sign);
+        let repair = slip.as_ref().map(|slip| slip.help);
+        let repair = repair.or_else(|| forms::of(&self.text[start..]));
+        refusals::not_expected((expected, &found), missing, span, repair)
     }
 }

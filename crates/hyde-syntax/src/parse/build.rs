@@ -3,7 +3,8 @@
 use crate::ast::{Name, UnitText};
 use crate::grammar::Rule;
 use crate::matcher::{Pair, Pairs};
-use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Span};
+use crate::refusals;
+use hyde_diag::{Diagnostics, FileId, Span};
 
 pub(super) type Node<'a> = Pair<'a>;
 
@@ -69,14 +70,8 @@ impl Builder<'_> {
         let value: f64 = node.as_str().parse().unwrap_or(f64::NAN);
         if !value.is_finite() {
             let span = self.span(node);
-            self.diagnostics.push(
-                Diagnostic::error(
-                    Code::BadNumber,
-                    format!("`{}` is not a finite number", node.as_str()),
-                )
-                .label(span, "beyond 1.8e308")
-                .help("write a number that a double can hold, or a larger unit"),
-            );
+            self.diagnostics
+                .push(refusals::number_not_finite(node.as_str(), span));
             return 0.0;
         }
         value

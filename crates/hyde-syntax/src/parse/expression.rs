@@ -6,7 +6,8 @@ use crate::ast::{
 };
 use crate::grammar::Rule;
 use crate::matcher::Pairs;
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::refusals;
+use hyde_diag::Span;
 use std::iter::Peekable;
 /// How strongly an operator between two operands binds them, as in Modelica.
 fn strength(operator: Rule) -> u8 {
@@ -179,13 +180,8 @@ impl Builder<'_> {
             return;
         }
         let number = crate::format_expression(operand);
-        let diagnostic = Diagnostic::error(Code::Syntax, "two signs stand one behind the other")
-            .label(operator.to(right.span), "a sum, or an uncertainty?")
-            .help(format!(
-                "the uncertainty of a parameter is written `~ ±{number}` behind its value; a sum with a negative number is \
-                 written `+ (-{number})`"
-            ));
-        self.diagnostics.push(diagnostic);
+        let signs = operator.to(right.span);
+        self.diagnostics.push(refusals::two_signs(signs, &number));
     }
 
     /// A range of numbers goes upwards.
@@ -199,11 +195,8 @@ impl Builder<'_> {
         }
         let span = from.span.to(to.span);
         let (low, high) = (crate::format_expression(to), crate::format_expression(from));
-        let message = "a range goes from the lower bound to the upper one";
-        let diagnostic = Diagnostic::error(Code::Syntax, message)
-            .label(span, "goes downwards")
-            .help(format!("write `{low} .. {high}`"));
-        self.diagnostics.push(diagnostic);
+        self.diagnostics
+            .push(refusals::range_downwards(span, (&low, &high)));
     }
 
     /// From a `counted` node, behind the value of its elements.

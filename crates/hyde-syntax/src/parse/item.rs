@@ -6,8 +6,8 @@ use crate::ast::{
     Class, ClassBody, ClassKind, Clocked, EffectUse, Element, File, Import, Item, Name, TypeItem,
 };
 use crate::grammar::Rule;
-use crate::{habits, recover};
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::{habits, recover, refusals};
+use hyde_diag::Span;
 
 /// Which section the elements of a class are in.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -76,22 +76,15 @@ impl Parser<'_> {
             return;
         };
         let span = Span::new(self.file, self.at, self.at + "package".len());
-        let message = "a file is one package: a second one begins here";
-        let diagnostic = Diagnostic::error(Code::Syntax, message)
-            .label(span, "a second package")
-            .label(first.span, "the first one")
-            .help("move it into a separate file with the name of the package, and import it: `import Name.*;`");
-        self.diagnostics.push(diagnostic);
+        self.diagnostics
+            .push(refusals::second_package(span, first.span));
     }
 
     /// `end NAME;` outside of everything, as of a package.
     fn end_of_nothing(&mut self) {
         let start = self.at;
         let span = Span::new(self.file, start, start + "end".len());
-        let diagnostic = Diagnostic::error(Code::Syntax, "there is no open block to end here")
-            .label(span, "an `end` too many")
-            .help("leave it out; a package is its file, `package Name;` on the first line, and has no `end`");
-        self.diagnostics.push(diagnostic);
+        self.diagnostics.push(refusals::end_of_nothing(span));
         self.at = recover::skip_statement(self.text, start + "end".len());
     }
 
@@ -227,14 +220,8 @@ impl Parser<'_> {
             return false;
         }
         let span = Span::new(self.file, self.at, self.at + word.len());
-        let message = format!("`{name}` is defined inside `{}`", outer.text);
-        let diagnostic = Diagnostic::error(Code::Syntax, message)
-            .label(span, "a class of its own")
-            .help(format!(
-                "move it before `{}`: the classes of a file cannot be nested",
-                outer.text
-            ));
-        self.diagnostics.push(diagnostic);
+        self.diagnostics
+            .push(refusals::nested_class((name, span), &outer.text));
         self.at = recover::skip_class(self.text, self.at, name);
         true
     }
@@ -270,11 +257,8 @@ impl Parser<'_> {
                 Element::InitialEquation(equation)
             }
             (element @ Element::Equation(_), Section::Declarations) => {
-                self.diagnostics.push(
-                    Diagnostic::error(Code::Misplaced, "an equation is among the declarations")
-                        .label(span, "this is an equation")
-                        .help("write `equation` before the first equation"),
-                );
+                self.diagnostics
+                    .push(refusals::equation_among_declarations(span));
                 element
             }
             (element, _) => element,
@@ -300,15 +284,8 @@ impl Parser<'_> {
         let start = self.at;
         if self.nth_word(1) == Some(";") {
             let span = Span::new(self.file, start, start + "end".len());
-            self.diagnostics.push(
-                Diagnostic::error(
-                    Code::EndName,
-                    format!("`{}` ends without its name", opened.text),
-                )
-                .label(span, format!("expected `end {};`", opened.text))
-                .label(opened.span, "opened here")
-                .help(format!("write `end {};`", opened.text)),
-            );
+            self.diagnostics
+                .push(refusals::end_without_name(opened, span));
             self.at = recover::skip_statement(self.text, start + "end".len());
             return;
         }
@@ -321,24 +298,13 @@ impl Parser<'_> {
         };
         let closed = self.build(start).name(&node);
         if closed.text != opened.text {
-            self.diagnostics.push(
-                Diagnostic::error(
-                    Code::EndName,
-                    format!("`{}` ends with `end {}`", opened.text, closed.text),
-                )
-                .label(closed.span, format!("expected `end {};`", opened.text))
-                .label(opened.span, "opened here")
-                .help(format!("write `end {};`", opened.text)),
-            );
+            self.diagnostics
+                .push(refusals::end_of_another(opened, &closed));
         }
     }
 
     pub(super) fn missing_end(&mut self, opened: &Name) {
-        self.diagnostics.push(
-            Diagnostic::error(Code::EndName, format!("`{}` has no end", opened.text))
-                .label(opened.span, "opened here")
-                .help(format!("write `end {};`", opened.text)),
-        );
+        self.diagnostics.push(refusals::no_end(opened));
     }
 
     /// Whether a new item begins here, at the start of a line.
