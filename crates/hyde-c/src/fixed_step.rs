@@ -1,6 +1,7 @@
 //! [`FixedStep`]: a program that is stepped with a fixed step, with its clocks in steps; or the part of it that cannot be.
 
-use hyde_diag::{Code, Diagnostic};
+use crate::refusals;
+use hyde_diag::Diagnostic;
 use hyde_program::{Constant, Program};
 use hyde_study::ports::{fixed_places, is_input};
 
@@ -108,11 +109,7 @@ impl<'a> FixedStep<'a> {
 
 fn expressible(program: &Program) -> Result<(), Box<Diagnostic>> {
     if let Some(delay) = program.delays.first() {
-        let message = "C code with a fixed step has no `delay`: it keeps no past values";
-        let diagnostic = Diagnostic::error(Code::CannotExport, message);
-        let help = "put the delay into a `clocked` part as values of earlier ticks, or export with `hyde export fmu`";
-        let diagnostic = diagnostic.label(delay.origin.span, "delayed here");
-        return Err(Box::new(diagnostic.help(help)));
+        return Err(Box::new(refusals::has_delay(delay.origin.span)));
     }
     if let Some(selection) = program.selections.first() {
         let names: Vec<String> = selection
@@ -120,19 +117,10 @@ fn expressible(program: &Program) -> Result<(), Box<Diagnostic>> {
             .iter()
             .map(|&position| program.unknown_name(position))
             .collect();
-        let message = format!(
-            "C code with a fixed step has fixed states; the run of this model chooses its states anew among `{}`",
-            names.join("`, `")
-        );
-        let diagnostic = Diagnostic::error(Code::CannotExport, message);
         let block = selection.candidates.first().and_then(|&p| program.block(p));
         let origin = block.and_then(|block| block.origins.first());
-        let diagnostic = match origin {
-            Some(origin) => diagnostic.label(origin.span, "one of their equations"),
-            None => diagnostic,
-        };
-        let help = "write the constraint in coordinates that stay independent, or export with `hyde export fmu`";
-        return Err(Box::new(diagnostic.help(help)));
+        let equation = origin.map(|origin| origin.span);
+        return Err(Box::new(refusals::chooses_states(&names, equation)));
     }
     Ok(())
 }
@@ -152,40 +140,32 @@ fn clock_steps(
         if (steps - whole).abs() <= WHOLE && whole < 1e15 {
             return Ok(whole as i64);
         }
-        let message = format!(
-            "the {what} of the clock `{}`, {} ms, is not a whole number of steps of {} ms",
-            own.name,
-            hyde_units::significant(1e3 * time, 9),
-            hyde_units::significant(1e3 * step_s, 9)
-        );
-        let help = "choose a step that divides the periods, delays and first ticks of all clocks: `--step 1e-4`";
-        let diagnostic = Diagnostic::error(Code::CannotExport, message);
-        let diagnostic = diagnostic.label(own.origin.span, "this clock");
-        Err(Box::new(diagnostic.help(help)))
+        let time = hyde_units::significant(1e3 * time, 9);
+        let step = hyde_units::significant(1e3 * step_s, 9);
+        let clock = (own.name.as_str(), own.origin.span);
+        Err(Box::new(refusals::not_whole_steps(
+            (what, &time),
+            clock,
+            &step,
+        )))
     };
     let found = ClockSteps {
         period: steps("period", Constant::Period(clock))?,
         phase: steps("first tick", Constant::Phase(clock))?,
         delay: steps("delay", Constant::Delay(clock))?,
     };
-    let wrong = match (found.period < 1, found.delay > found.period) {
-        (true, _) => "the period of a clock is not above 0",
-        (_, true) => "the held values of a clock change more than a period after their tick",
-        (false, false) => {
-            return Ok(ClockSteps {
-                phase: match found.phase < 0 {
-                    true => found.phase.rem_euclid(found.period),
-                    false => found.phase,
-                },
-                ..found
-            });
-        }
-    };
-    let diagnostic = Diagnostic::error(Code::CannotExport, wrong);
-    let diagnostic = diagnostic.label(own.origin.span, "this clock");
-    Err(Box::new(diagnostic.help(
-        "use a delay of at most one period, or export with `hyde export fmu`",
-    )))
+    let here = own.origin.span;
+    match (found.period < 1, found.delay > found.period) {
+        (true, _) => Err(Box::new(refusals::no_period(here))),
+        (_, true) => Err(Box::new(refusals::delay_longer_than_period(here))),
+        (false, false) => Ok(ClockSteps {
+            phase: match found.phase < 0 {
+                true => found.phase.rem_euclid(found.period),
+                false => found.phase,
+            },
+            ..found
+        }),
+    }
 }
 
 fn inputs(program: &Program) -> Vec<Input> {

@@ -20,6 +20,7 @@ mod factors;
 mod fixed_step;
 mod header;
 mod names;
+mod refusals;
 mod source;
 
 pub use fixed_step::{FixedStep, Start};

@@ -4,6 +4,7 @@
 //! The folders in the way through; each uses only those above it:
 //!
 //! ```text
+//! refusals   what is said of a `calibrate` block that is wrong
 //! plan       what a `calibrate` block asks for
 //! linear     linear systems: what one does in a step, and products of small matrices
 //! records    a record at even rows: what drives the model, what was measured
@@ -26,6 +27,7 @@ mod observer;
 mod plan;
 mod plant;
 mod records;
+mod refusals;
 mod selftest;
 
 pub use diagnosis::{

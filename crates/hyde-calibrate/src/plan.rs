@@ -2,7 +2,8 @@
 
 mod label;
 
-use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use crate::refusals;
+use hyde_diag::{Diagnostics, Span};
 use hyde_syntax::ast::{
     self, Expr, ExprKind, Name, Range, Reference, SettingValue, Study, StudyItem, Unary, Varied,
 };
@@ -92,18 +93,10 @@ impl CalibrationPlan {
                 StudyItem::Vary(list) => {
                     for variation in list {
                         if let Some(values) = &variation.values {
-                            diagnostics.push(wrong(
-                                values.span,
-                                "a calibration finds values itself",
-                                "give a range: `vary guide.F in 100 .. 400 [N];`",
-                            ));
+                            diagnostics.push(refusals::gives_values(values.span));
                         }
                         if variation.what != Varied::Part {
-                            diagnostics.push(wrong(
-                                variation.target.span,
-                                "a calibration varies parameters",
-                                "write `vary uncertain;`, or name them: `vary guide.F, guide.b;`",
-                            ));
+                            diagnostics.push(refusals::varies_no_parameter(variation.target.span));
                         }
                         let name = variation.target.dotted();
                         let per = variation.per.as_ref().map(|per| Per {
@@ -111,14 +104,7 @@ impl CalibrationPlan {
                             span: per.span,
                         });
                         if let Some(per) = per.as_ref().filter(|_| name == "uncertain") {
-                            diagnostics.push(wrong(
-                                per.span,
-                                "`uncertain` stands for many parameters",
-                                &format!(
-                                    "name those that differ per {0}: `vary uncertain; vary saddle.M per {0};`",
-                                    per.label
-                                ),
-                            ));
+                            diagnostics.push(refusals::uncertain_per(&per.label, per.span));
                         }
                         plan.vary.push(match (&variation.within, name.as_str()) {
                             (None, "uncertain") => Vary::Uncertain(variation.target.span),
@@ -133,19 +119,11 @@ impl CalibrationPlan {
                         });
                     }
                 }
-                StudyItem::VaryEffects(_) => diagnostics.push(wrong(
-                    plan.span,
-                    "a calibration puts no effects on the model",
-                    "calibrate a model that has them: `model B = A with E on site;`",
-                )),
+                StudyItem::VaryEffects(_) => diagnostics.push(refusals::varies_effects(plan.span)),
                 StudyItem::Setting(name, _, labels)
                     if !labels.is_empty() && !["fit", "holdout"].contains(&name.text.as_str()) =>
                 {
-                    diagnostics.push(wrong(
-                        name.span,
-                        &format!("`{}` has no labels", name.text),
-                        "write `at` behind the records: `fit bench(\"full-*.csv\") at load = 200 [kg];`",
-                    ));
+                    diagnostics.push(refusals::setting_with_labels(&name.text, name.span));
                 }
                 StudyItem::Setting(name, values, labels) => match name.text.as_str() {
                     "fit" => plan.fit.extend(sources(name, values, labels, diagnostics)),
@@ -155,33 +133,19 @@ impl CalibrationPlan {
                     }
                     "starts" => match whole(values) {
                         Some(count @ 1..=100) => plan.starts = count,
-                        Some(_) | None => diagnostics.push(wrong(
-                            name.span,
-                            "how many starts?",
-                            "write a number from 1 to 100: `starts 4;`",
-                        )),
+                        Some(_) | None => {
+                            diagnostics.push(refusals::starts_not_a_number(name.span))
+                        }
                     },
-                    other => diagnostics.push(wrong(
-                        name.span,
-                        &format!("a calibration has no `{other}`"),
-                        "it has `fit`, `holdout`, `vary` and `starts`",
-                    )),
+                    other => diagnostics.push(refusals::no_such_setting(other, name.span)),
                 },
             }
         }
         if plan.fit.is_empty() {
-            diagnostics.push(wrong(
-                plan.span,
-                "nothing says which records to calibrate on",
-                "write `fit bench(\"fit-*.csv\");`",
-            ));
+            diagnostics.push(refusals::no_fit(plan.span));
         }
         if plan.vary.is_empty() {
-            diagnostics.push(wrong(
-                plan.span,
-                "nothing says what may be varied",
-                "write `vary uncertain;`, or name parameters: `vary guide.F, guide.b;`",
-            ));
+            diagnostics.push(refusals::no_vary(plan.span));
         }
         plan.check_labels(diagnostics);
         (diagnostics.error_count() == before).then_some(plan)
@@ -203,25 +167,17 @@ impl CalibrationPlan {
             let mut own: Vec<&str> = Vec::new();
             for label in &source.labels {
                 if own.contains(&label.name.as_str()) {
-                    diagnostics.push(wrong(
-                        label.span,
-                        &format!("the label `{}` has two values", label.name),
-                        "write a `fit` for each value",
-                    ));
+                    diagnostics.push(refusals::label_twice(&label.name, label.span));
                 }
                 own.push(&label.name);
                 match first.iter().find(|known| known.name == label.name) {
-                    Some(known) if !known.value.comparable(&label.value) => diagnostics.push(
-                        wrong(
-                            label.span,
-                            &format!(
-                                "the label `{}` is `{}` here and `{}` elsewhere, which cannot be compared",
-                                label.name, label.shown, known.shown
-                            ),
-                            "write all values of a label with units of one kind, or all as texts",
-                        )
-                        .label(known.span, "the other value"),
-                    ),
+                    Some(known) if !known.value.comparable(&label.value) => {
+                        diagnostics.push(refusals::label_not_comparable(
+                            &label.name,
+                            (&label.shown, label.span),
+                            (&known.shown, known.span),
+                        ))
+                    }
                     Some(_) => {}
                     None => first.push(label),
                 }
@@ -234,23 +190,13 @@ impl CalibrationPlan {
             }
             let known = first.iter().map(|own| format!("`per {}`", own.name));
             let known = known.chain(["`per record`".to_owned(), "`per experiment`".to_owned()]);
-            diagnostics.push(wrong(
+            diagnostics.push(refusals::no_such_label(
+                &per.label,
                 per.span,
-                &format!("no records have a label `{0}`", per.label),
-                &format!(
-                    "write it behind the records, `fit bench(\"full-*.csv\") at {} = 200 [kg];`; this calibration has {}",
-                    per.label,
-                    known.collect::<Vec<_>>().join(", ")
-                ),
+                &known.collect::<Vec<_>>(),
             ));
         }
     }
-}
-
-fn wrong(span: Span, message: &str, help: &str) -> Diagnostic {
-    Diagnostic::error(Code::BadStudy, message)
-        .label(span, "in this study")
-        .help(help)
 }
 
 /// `bench("fit-*.csv")`, `bench(file = "a.csv", other = "b.csv")`, `bench`.
@@ -267,7 +213,7 @@ fn sources(
     let labels: Vec<Label> = labels.collect();
     for value in values {
         let SettingValue::Expr(expr) = value else {
-            diagnostics.push(not_a_source(setting.span, &setting.text));
+            diagnostics.push(refusals::not_a_source(&setting.text, setting.span));
             continue;
         };
         match &expr.kind {
@@ -281,7 +227,8 @@ fn sources(
                 let mut patterns = Vec::new();
                 for argument in arguments {
                     let ExprKind::String(text) = &argument.value.kind else {
-                        diagnostics.push(not_a_source(argument.value.span, &setting.text));
+                        diagnostics
+                            .push(refusals::not_a_source(&setting.text, argument.value.span));
                         continue;
                     };
                     let record = argument.name.as_ref().map(|name| name.text.clone());
@@ -306,21 +253,15 @@ fn sources(
             | ExprKind::If(..)
             | ExprKind::Array(..)
             | ExprKind::Comprehension(_)
-            | ExprKind::Slice(..) => diagnostics.push(not_a_source(expr.span, &setting.text)),
+            | ExprKind::Slice(..) => {
+                diagnostics.push(refusals::not_a_source(&setting.text, expr.span))
+            }
         }
     }
     if values.is_empty() {
-        diagnostics.push(not_a_source(setting.span, &setting.text));
+        diagnostics.push(refusals::not_a_source(&setting.text, setting.span));
     }
     found
-}
-
-fn not_a_source(span: Span, setting: &str) -> Diagnostic {
-    wrong(
-        span,
-        &format!("`{setting}` takes an experiment with the files of its records"),
-        &format!("write `{setting} bench(\"fit-*.csv\");`: patterns are below `--data DIR`"),
-    )
 }
 
 fn whole(values: &[SettingValue]) -> Option<usize> {
@@ -348,11 +289,7 @@ fn bounds(range: &Range, diagnostics: &mut Diagnostics) -> Option<(f64, f64, Nam
     };
     let bounds = found();
     if bounds.is_none() {
-        diagnostics.push(wrong(
-            range.from.span,
-            "the bounds of a parameter are two numbers, the smaller first",
-            "write `vary guide.F in 100 .. 400 [N];`",
-        ));
+        diagnostics.push(refusals::bounds_not_ascending(range.from.span));
     }
     bounds
 }

@@ -9,7 +9,8 @@
 //! ```
 
 use crate::load::File;
-use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use crate::refusals::diagnoses as refused;
+use hyde_diag::{Diagnostics, Span};
 use hyde_flatten::Candidate;
 use hyde_syntax::ast::{ExprKind, Name, Reference, SettingValue, Study, StudyItem, StudyKind};
 
@@ -52,24 +53,15 @@ impl DiagnosisPlan {
         };
         check_calibration(file, study, diagnostics);
         if let Some(other) = study.also.first() {
-            diagnostics.push(
-                wrong(other.span, "a diagnosis is of one calibration")
-                    .help("write a diagnosis for each calibration"),
-            );
+            diagnostics.push(refused::several_calibrations(other.span));
         }
         for item in &study.items {
             let StudyItem::Setting(setting, values, labels) = item else {
-                diagnostics.push(
-                    wrong(study.name.span, "a diagnosis has no `vary`")
-                        .help("write `vary` in its calibration"),
-                );
+                diagnostics.push(refused::varies(study.name.span));
                 continue;
             };
             if let Some(label) = labels.first() {
-                diagnostics.push(
-                    wrong(label.name.span, "a diagnosis has no labels")
-                        .help("write `at` behind the records of its calibration"),
-                );
+                diagnostics.push(refused::has_labels(label.name.span));
             }
             match setting.text.as_str() {
                 "candidates" => {
@@ -80,27 +72,19 @@ impl DiagnosisPlan {
                 }
                 "max_effects" => match whole(values) {
                     Some(count @ 1..=20) => plan.max_effects = usize::try_from(count).unwrap_or(1),
-                    Some(_) | None => diagnostics.push(
-                        wrong(setting.span, "`max_effects` needs a number")
-                            .help("write a number from 1 to 20: `max_effects 3;`"),
-                    ),
+                    Some(_) | None => {
+                        diagnostics.push(refused::max_effects_not_a_number(setting.span))
+                    }
                 },
                 "seed" => match whole(values) {
                     Some(seed) => plan.seed = seed,
-                    None => diagnostics.push(
-                        wrong(setting.span, "a seed is one whole number").help("write `seed 1;`"),
-                    ),
+                    None => diagnostics.push(refused::seed_not_a_number(setting.span)),
                 },
-                other => diagnostics.push(
-                    wrong(setting.span, &format!("a diagnosis has no `{other}`"))
-                        .help("it has `candidates`, `max_effects` and `seed`"),
-                ),
+                other => diagnostics.push(refused::no_such_setting(other, setting.span)),
             }
         }
         if plan.candidates.is_empty() && diagnostics.error_count() == before {
-            diagnostics.push(wrong(plan.span, "the diagnosis has no `candidates`").help(
-                "write `candidates Effects.*;`, followed by the packages of your own effects",
-            ));
+            diagnostics.push(refused::no_candidates(plan.span));
         }
         (diagnostics.error_count() == before).then_some(plan)
     }
@@ -132,18 +116,7 @@ fn check_calibration(file: &File, study: &Study, diagnostics: &mut Diagnostics) 
     if known.contains(&wanted) {
         return;
     }
-    let help = match known.as_slice() {
-        [] => format!("write `calibrate {wanted} of MODEL … end {wanted};` before it"),
-        known => format!("the file has `{}`", known.join("`, `")),
-    };
-    diagnostics.push(
-        Diagnostic::error(
-            Code::BadDiagnosis,
-            format!("the file has no calibration `{wanted}`"),
-        )
-        .label(study.of.span, "a diagnosis needs a calibrated model")
-        .help(help),
-    );
+    diagnostics.push(refused::no_calibration((&wanted, study.of.span), &known));
 }
 
 /// `Effects.*` or the name of an effect, as far as there are such effects.
@@ -184,11 +157,7 @@ fn pattern(
             | ExprKind::Array(..)
             | ExprKind::Comprehension(_)
             | ExprKind::Slice(..) => {
-                diagnostics.push(
-                    wrong(setting.span, "candidates must be effects")
-                        .label(expr.span, "names none")
-                        .help("write `Effects.*` or the name of an effect"),
-                );
+                diagnostics.push(refused::candidate_not_an_effect(setting.span, expr.span));
                 return None;
             }
         },
@@ -200,24 +169,11 @@ fn pattern(
             false => text,
         });
     }
-    let what = match everything {
-        true => format!("no package `{text}` has effects"),
-        false => format!("no effect is called `{text}`"),
-    };
-    let near = (!everything).then(|| meant(&text, &known)).flatten();
-    let help = match near {
-        Some(name) => format!("did you mean `{name}`?"),
-        None => format!(
-            "packages with effects are `{}`",
-            packages(&known).join("`, `")
-        ),
-    };
-    diagnostics.push(
-        Diagnostic::error(Code::BadDiagnosis, what)
-            .label(path.span, "not known")
-            .help(help)
-            .note("`hyde effects FILE` lists the effects that fit on the model"),
-    );
+    let (here, packages) = ((text.as_str(), path.span), packages(&known));
+    diagnostics.push(match everything {
+        true => refused::package_without_effects(here, &packages),
+        false => refused::unknown_effect(here, meant(&text, &known), &packages),
+    });
     None
 }
 
@@ -261,8 +217,4 @@ fn whole(values: &[SettingValue]) -> Option<u64> {
         | ExprKind::Comprehension(_)
         | ExprKind::Slice(..) => None,
     }
-}
-
-fn wrong(span: Span, message: &str) -> Diagnostic {
-    Diagnostic::error(Code::BadDiagnosis, message).label(span, "in this diagnosis")
 }

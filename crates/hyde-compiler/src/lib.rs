@@ -11,6 +11,7 @@ mod load;
 mod named;
 mod parses;
 mod pipeline;
+mod refusals;
 mod states;
 mod write_back;
 mod write_values;

@@ -3,7 +3,8 @@
 use crate::library_trees;
 use crate::named::{Sought, packages_named, tables_named, words_named};
 use crate::parses::counted;
-use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use crate::refusals::packages as refused;
+use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_flatten::{FmuInterface, TableFile};
 use hyde_library::Package;
 use hyde_syntax::ast::{self, Item};
@@ -173,14 +174,7 @@ fn find(
             None
         }
         (Ok(Some((place, _))), Some(_)) => {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::Duplicate,
-                    format!("the package `{name}` is in the library and in `{place}`"),
-                )
-                .label(span, "which of them?")
-                .help("rename yours, and its file as well"),
-            );
+            diagnostics.push(refused::also_in_library(name, &place, span));
             None
         }
         (Ok(Some((place, text))), None) => Some(Found {
@@ -201,22 +195,14 @@ pub fn check_name(
     diagnostics: &mut Diagnostics,
 ) {
     let place = &sources.get(id).name;
-    let diagnostic = match &tree.package {
-        Some((path, _)) if path.dotted() == name => return,
-        Some((path, _)) => Diagnostic::error(
-            Code::PackagePath,
-            format!("the package in `{place}` is called `{}`", path.dotted()),
-        )
-        .label(path.span, format!("its path requires `{name}`")),
-        None => Diagnostic::error(
-            Code::PackagePath,
-            format!("`{place}` does not declare its package"),
-        )
-        .label(Span::new(id, 0, 0), format!("its path requires `{name}`")),
+    let Some((path, _)) = &tree.package else {
+        diagnostics.push(refused::not_declared(place, Span::new(id, 0, 0), name));
+        return;
     };
-    diagnostics.push(diagnostic.help(format!(
-        "write `package {name};`, or move the file: the package `a.b` is in `a/b.hyde`"
-    )));
+    let found = path.dotted();
+    if found != name {
+        diagnostics.push(refused::called_otherwise((&found, path.span), place, name));
+    }
 }
 
 impl File {
@@ -355,30 +341,16 @@ impl File {
                 let library: Vec<String> = library.map(|p| format!("`{}`", p.name)).collect();
                 let here = (packages.all)();
                 let own: Vec<String> = here.iter().map(|(name, _)| format!("`{name}`")).collect();
-                let diagnostic = Diagnostic::error(
-                    Code::UnknownType,
-                    format!("there is no package `{package}`"),
-                )
-                .label(
-                    span,
-                    format!("neither in the library nor {}", packages.searched),
-                );
-                if let Some(help) = hyde_syntax::instead_of(&package) {
-                    diagnostics.push(diagnostic.help(help));
-                    continue;
-                }
                 let names = hyde_library::PACKAGES.iter().map(|package| package.name);
                 let names = names.chain(here.iter().map(|(name, _)| name.as_str()));
-                if let Some(near) = hyde_flatten::nearest(&package, names) {
-                    diagnostics.push(diagnostic.help(format!("did you mean `{near}`?")));
-                    continue;
-                }
-                let help = format!("the library has {}", library.join(", "));
-                diagnostics.push(if own.is_empty() {
-                    diagnostic.help(help)
-                } else {
-                    diagnostic.help(format!("{help}; here are {}", own.join(", ")))
-                });
+                let near = hyde_flatten::nearest(&package, names);
+                let instead = hyde_syntax::instead_of(&package);
+                diagnostics.push(refused::no_package(
+                    (&package, span),
+                    packages.searched,
+                    (instead.as_deref(), near),
+                    (&library, &own),
+                ));
             }
         }
     }

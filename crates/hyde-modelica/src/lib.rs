@@ -14,9 +14,10 @@ mod declarations;
 mod events;
 mod expression;
 mod names;
+mod refusals;
 
 use hyde_compiler::{Form, FreeInputs, Request};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::{Diagnostic, Diagnostics};
 use hyde_ir::Dae;
 use hyde_ir::dae::{InitialCondition, ReactionKind};
 use hyde_study::Project;
@@ -55,12 +56,7 @@ pub fn written(project: &mut Project, name: &str) -> Option<Written> {
     }
     let found = class(&dae, name);
     if found.is_none() {
-        let diagnostic = Diagnostic::error(
-            Code::CannotExport,
-            "the Modelica text of the model is longer than 50 MB",
-        );
-        let help = "reduce the number of cells of fields, or export with `hyde export fmu`";
-        project.diagnostics.push(diagnostic.help(help));
+        project.diagnostics.push(refusals::too_long());
     }
     found
 }
@@ -69,30 +65,14 @@ pub fn written(project: &mut Project, name: &str) -> Option<Written> {
 fn inexpressible(dae: &Dae) -> Option<Diagnostic> {
     if let Some(selection) = dae.selections.first() {
         let choice = dae.choice(selection);
-        let message = format!(
-            "the run chooses its states anew among `{}`, which flat Modelica does not express",
-            choice.candidates.join("`, `")
-        );
-        let diagnostic = Diagnostic::error(Code::CannotExport, message);
-        let diagnostic = match choice.constraints.first() {
-            Some(origin) => diagnostic.label(origin.span, "a constraint between them"),
-            None => diagnostic,
-        };
-        return Some(diagnostic.help(
-            "write the constraint in coordinates that stay independent, or export with `hyde export fmu`",
-        ));
+        let constraint = choice.constraints.first().map(|origin| origin.span);
+        return Some(refusals::chooses_states(&choice.candidates, constraint));
     }
     let edges = dae.reactions.iter();
     let edge = edges
         .into_iter()
         .find(|own| matches!(own.kind, ReactionKind::Edge(_)))?;
-    let message = "`edge` inside a condition is not exported to Modelica";
-    let diagnostic = Diagnostic::error(Code::CannotExport, message);
-    let diagnostic = diagnostic.label(edge.origin.span, "this edge");
-    Some(
-        diagnostic
-            .help("write a `when` with the condition itself, or export with `hyde export fmu`"),
-    )
+    Some(refusals::edge_in_condition(edge.origin.span))
 }
 
 fn class(dae: &Dae, name: &str) -> Option<Written> {

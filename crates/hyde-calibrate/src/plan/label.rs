@@ -1,6 +1,7 @@
 //! [`Label`]: a fact about the records of a `fit` or `holdout`, `load = 200 [kg]`, its value read and comparable.
 
-use super::{number, wrong};
+use super::number;
+use crate::refusals;
 use hyde_diag::{Diagnostics, Span};
 use hyde_syntax::ast::{self, ExprKind};
 use hyde_units::{Dimension, NamedUnit};
@@ -35,11 +36,7 @@ impl Label {
     pub(crate) fn read(label: &ast::Label, diagnostics: &mut Diagnostics) -> Option<Self> {
         let name = label.name.text.clone();
         if TAKEN.contains(&name.as_str()) {
-            diagnostics.push(wrong(
-                label.name.span,
-                &format!("every record has its own value of `{name}`"),
-                "leave the label out, `vary saddle.M per record;` needs none, or give it another name",
-            ));
+            diagnostics.push(refusals::label_of_every_record(&name, label.name.span));
             return None;
         }
         let read = match &label.value.kind {
@@ -68,11 +65,7 @@ impl Label {
             }),
         };
         let Some((value, shown)) = read else {
-            diagnostics.push(wrong(
-                label.value.span,
-                &format!("the value of the label `{name}` is not a number or a text"),
-                "write `at load = 200 [kg]` or `at load = \"full\"`",
-            ));
+            diagnostics.push(refusals::value_of_label(&name, label.value.span));
             return None;
         };
         Some(Self {
