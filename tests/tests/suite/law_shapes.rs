@@ -84,7 +84,7 @@ fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
 
 /// Of each shape its text and its closed form, of v, x, t and two constants.
 type Form = fn(f64, f64, f64, f64, f64) -> f64;
-const FORMS: [(&str, &str, Form); 28] = [
+const FORMS: [(&str, &str, Form); 29] = [
     ("speed", "v/v1", |v, _, _, _, _| v / 0.2),
     ("magnitude", "noEvent(abs(v))/v1", |v, _, _, _, _| {
         v.abs() / 0.2
