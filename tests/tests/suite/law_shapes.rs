@@ -180,7 +180,7 @@ fn every_shape_of_the_library_has_its_closed_form_and_its_text() {
             let form = FORMS.iter().find(|form| form.0 == name && form.1 == text);
             let form = form.unwrap_or_else(|| panic!("{name}: {text}"));
             seen.insert((form.0, form.1));
-            assert!(!output.is_sum, "{text}");
+            assert_eq!(output.is_sum, name == "coming", "{text}");
             for (v, x, t) in [(0.13, 0.04, 0.3), (-0.07, -0.02, 1.9), (0.0, 0.0, 0.0)] {
                 let constants = [0.03, 0.011];
                 let own = value(shape, output, Point { v, x, t, constants });
