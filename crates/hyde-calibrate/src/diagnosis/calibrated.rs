@@ -48,8 +48,7 @@ pub(super) fn calibrate_found(
         innovations,
         ..fitted.solution
     };
-    let mut hypotheses = inquiry.hypotheses.to_vec();
-    hypotheses.extend(diagnosis.law().map(|law| law.hypothesis.clone()));
+    let hypotheses = diagnosis.hypotheses(inquiry);
     let stage = Stage { solution, ..fitted };
     diagnosis.take(stage, &hypotheses);
     let last = diagnosis.findings.last().cloned();

@@ -11,7 +11,7 @@ use super::hypothesis::Built;
 use super::inquiry::Inquiry;
 use super::prune::without;
 use super::search::{Diagnosis, Verdict, excess, explained, verdict};
-use super::stage::{Ground, Stage};
+use super::stage::Stage;
 use crate::plant::Unsupported;
 use hyde_program::Program;
 
@@ -64,10 +64,7 @@ impl Diagnosis {
         inquiry: &Inquiry<'_>,
         finding: usize,
     ) -> Result<FoundModel, Unsupported> {
-        let ground = Ground {
-            observer: self.observer.as_ref().unwrap_or(inquiry.observer),
-            ..inquiry.ground()
-        };
+        let ground = self.ground(inquiry);
         let own = inquiry.hypotheses.len();
         let law = self.law().map(|law| &law.written);
         let build = |list: &[usize]| -> Option<Built> {
@@ -87,9 +84,14 @@ impl Diagnosis {
     /// # Errors
     /// The model has no fixed-step form.
     pub fn keep(&mut self, inquiry: &Inquiry<'_>, model: FoundModel) -> Result<(), Unsupported> {
+        self.reduce(inquiry, model)?;
+        self.spread(inquiry)
+    }
+
+    /// The same with intervals as curvature has them.
+    fn reduce(&mut self, inquiry: &Inquiry<'_>, model: FoundModel) -> Result<(), Unsupported> {
         let FoundModel { stage } = model;
-        let mut hypotheses = inquiry.hypotheses.to_vec();
-        hypotheses.extend(self.law().map(|law| law.hypothesis.clone()));
+        let hypotheses = self.hypotheses(inquiry);
         if !stage.has(inquiry.hypotheses.len())
             && let Some(unknown) = &mut self.unknown
         {
@@ -106,7 +108,7 @@ impl Diagnosis {
                 inquiry.thresholds,
             ),
         };
-        self.spread(inquiry)
+        Ok(())
     }
 
     /// Whether what the model has beside one with fewer findings explains a part of what is missing that is worth a word.
@@ -126,7 +128,7 @@ pub(super) fn only_told(
     while let Some(number) = least_told(&diagnosis.findings) {
         dropped.push(diagnosis.findings[number].hypothesis);
         let less = diagnosis.without(inquiry, number)?;
-        diagnosis.keep(inquiry, less)?;
+        diagnosis.reduce(inquiry, less)?;
     }
     let mut number = 0;
     while diagnosis.verdict == Verdict::Unknown
@@ -137,7 +139,7 @@ pub(super) fn only_told(
         if diagnosis.explains_a_part_beside(&less, inquiry.thresholds.a_part) {
             number += 1;
         } else {
-            diagnosis.keep(inquiry, less)?;
+            diagnosis.reduce(inquiry, less)?;
         }
     }
     Ok(dropped)

@@ -47,6 +47,14 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// What is known of it beside its quantities.
+    pub(super) fn taken(&self) -> Taken {
+        Taken {
+            round: self.round,
+            alternatives: self.alternatives.clone(),
+        }
+    }
+
     /// The hypotheses that records cannot tell from it and that are in a relation to it.
     pub fn related(&self, relation: Relation) -> impl Iterator<Item = &Alternative> {
         let all = self.alternatives.iter();

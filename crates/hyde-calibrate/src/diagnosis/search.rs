@@ -143,15 +143,24 @@ impl Diagnosis {
 
     /// Widens the intervals by what shapes that the records do not determine might be.
     pub(super) fn spread(&mut self, inquiry: &Inquiry<'_>) -> Result<(), Unsupported> {
-        let ground = Ground {
+        let (ground, hypotheses) = (self.ground(inquiry), self.hypotheses(inquiry));
+        self.findings =
+            with_undetermined(&ground, &hypotheses, &self.stage(), self.findings.clone())?;
+        Ok(())
+    }
+
+    /// What its models are compared on.
+    pub(super) fn ground<'g>(&'g self, inquiry: &'g Inquiry<'g>) -> Ground<'g> {
+        Ground {
             observer: self.observer.as_ref().unwrap_or(inquiry.observer),
             ..inquiry.ground()
-        };
-        let mut hypotheses = inquiry.hypotheses.to_vec();
-        hypotheses.extend(self.law().map(|law| law.hypothesis.clone()));
-        let found = std::mem::take(&mut self.findings);
-        self.findings = with_undetermined(&ground, &hypotheses, &self.stage(), found)?;
-        Ok(())
+        }
+    }
+
+    /// The hypotheses of the inquiry, and that of a law that was found behind them.
+    pub(super) fn hypotheses(&self, inquiry: &Inquiry<'_>) -> Vec<Hypothesis> {
+        let law = self.law().map(|law| law.hypothesis.clone());
+        inquiry.hypotheses.iter().cloned().chain(law).collect()
     }
 
     /// Makes a stage the answer. What is known of effects that were found before stays.
@@ -165,10 +174,7 @@ impl Diagnosis {
                     round,
                     alternatives: Vec::new(),
                 },
-                |finding| Taken {
-                    round: finding.round,
-                    alternatives: finding.alternatives.clone(),
-                },
+                Finding::taken,
             )
         });
         self.findings = findings(&stage, hypotheses, taken.collect());

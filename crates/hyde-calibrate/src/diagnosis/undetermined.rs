@@ -11,7 +11,6 @@
 //! constant.
 
 use super::finding::{Finding, Quantity, findings};
-use super::forward::Taken;
 use super::hypothesis::{Hypothesis, Knob};
 use super::stage::{Ground, Stage};
 use crate::fit::{
@@ -90,9 +89,8 @@ pub(super) fn with_undetermined(
                 || allowed(ground, &base, kept, shape.range.0),
                 || allowed(ground, &base, kept, shape.range.1),
             );
-            let (low, high) = (low?, high?);
             for end in [&low, &high] {
-                let there = findings(end, hypotheses, found.iter().map(taken).collect());
+                let there = findings(end, hypotheses, found.iter().map(Finding::taken).collect());
                 found = found.into_iter().zip(there).map(united).collect();
             }
             found[number].shapes[place].interval = (low.kept[kept].1, high.kept[kept].1);
@@ -134,40 +132,33 @@ fn undetermined(
     Ok(Some((base, kept)))
 }
 
-/// The stage with a number that is kept as near to an end of its range as the records allow, everything else fitted.
-fn allowed(
-    ground: &Ground<'_>,
-    stage: &Stage,
-    kept: usize,
-    end: f64,
-) -> Result<Stage, Unsupported> {
+/// The stage with a number that is kept as near to an end of its range as the records allow, everything else fitted. A value
+/// with which the model cannot be run is not allowed.
+fn allowed(ground: &Ground<'_>, stage: &Stage, kept: usize, end: f64) -> Stage {
     let most = stage.solution.cost() + given_up(&stage.solution, 1);
     let begin = stage.kept[kept].1;
     let mut best = stage.clone();
-    // The part of the way that is known to be allowed, and one that is not.
-    let (mut inside, mut outside) = (0.0, 1.0);
-    for look in 0..=BISECTIONS {
-        let part = if look == 0 {
-            1.0
-        } else {
-            0.5 * (inside + outside)
-        };
+    // The part of the way that is known to be allowed, one that is not, and the one to look at: the end first.
+    let (mut inside, mut outside, mut part) = (0.0, 1.0, 1.0);
+    for _ in 0..=BISECTIONS {
         let mut other = best.clone();
         other.kept[kept].1 = between(begin, end, part);
         let set = ground.set_in(&other.program, &other.kept);
         let problem = ground.problem(&other.program, &other.varied, &set, None);
-        let start = &best.solution.values;
-        other.solution = problem.solve_in(start, MAX_STEPS, Slopes::Tangents)?;
-        if other.solution.cost() <= most {
-            (best, inside) = (other, part);
-        } else {
-            outside = part;
+        let fitted = problem.solve_in(&best.solution.values, MAX_STEPS, Slopes::Tangents);
+        match fitted {
+            Ok(solution) if solution.cost() <= most => {
+                other.solution = solution;
+                (best, inside) = (other, part);
+            }
+            Ok(_) | Err(_) => outside = part,
         }
-        if inside >= 1.0 {
+        if inside >= outside {
             break;
         }
+        part = 0.5 * (inside + outside);
     }
-    Ok(best)
+    best
 }
 
 /// A value on the way from one to another: by ratios where both have the same sign.
@@ -175,14 +166,6 @@ fn between(from: f64, to: f64, part: f64) -> f64 {
     match from * to > 0.0 {
         true => from * (to / from).powf(part),
         false => from + part * (to - from),
-    }
-}
-
-/// What is known of a finding beside its quantities.
-fn taken(finding: &Finding) -> Taken {
-    Taken {
-        round: finding.round,
-        alternatives: finding.alternatives.clone(),
     }
 }
 
