@@ -3,7 +3,9 @@
 //! An effect passes its gates when it is taken in, beside what is known then. At the end, with every other effect and all
 //! parameters fitted beside it, the 95 % interval of its size may hold 0: then the records do not say that it is there. It
 //! goes, everything else is fitted again, and what is left is asked the same. Beside an `unknown` without a law an effect
-//! is a part of what is missing only if it explains a part that is worth a word.
+//! is a part of what is missing only if it explains a part that is worth a word. What is left is asked once more with the
+//! intervals over all that its records allow of shapes that they do not determine ([`super::undetermined`]): these are the
+//! intervals that are printed.
 
 use super::calibrated::calibrate_found;
 use super::finding::{Finding, Quantity};
@@ -79,13 +81,13 @@ impl Diagnosis {
         })
     }
 
-    /// Makes a model with fewer findings the answer.
+    /// Makes a model with fewer findings the answer, those of them that are told.
     ///
     /// # Errors
     /// The model has no fixed-step form.
     pub fn keep(&mut self, inquiry: &Inquiry<'_>, model: FoundModel) -> Result<(), Unsupported> {
         self.reduce(inquiry, model)?;
-        self.spread(inquiry)
+        only_told(inquiry, self).map(drop)
     }
 
     /// The same with intervals as curvature has them.
@@ -118,18 +120,29 @@ impl Diagnosis {
     }
 }
 
-/// Drops effects, the least told first, until all that is claimed is told from 0, and a part of what is missing; the hypotheses
-/// that were not told.
+/// Drops effects, the least told first, until all that is claimed is told from 0 whatever shapes that the records do not
+/// determine might be, and a part of what is missing; the hypotheses that were not told.
 pub(super) fn only_told(
     inquiry: &Inquiry<'_>,
     diagnosis: &mut Diagnosis,
 ) -> Result<Vec<usize>, Unsupported> {
     let mut dropped = Vec::new();
-    while let Some(number) = least_told(&diagnosis.findings) {
-        dropped.push(diagnosis.findings[number].hypothesis);
-        let less = diagnosis.without(inquiry, number)?;
-        diagnosis.reduce(inquiry, less)?;
+    loop {
+        while let Some(number) = least_told(&diagnosis.findings) {
+            dropped.push(diagnosis.findings[number].hypothesis);
+            let less = diagnosis.without(inquiry, number)?;
+            diagnosis.reduce(inquiry, less)?;
+        }
+        only_parts(inquiry, diagnosis)?;
+        diagnosis.spread(inquiry)?;
+        if least_told(&diagnosis.findings).is_none() {
+            return Ok(dropped);
+        }
     }
+}
+
+/// Drops effects beside an `unknown` without a law that explain no part of what is missing that is worth a word.
+fn only_parts(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), Unsupported> {
     let mut number = 0;
     while diagnosis.verdict == Verdict::Unknown
         && diagnosis.law().is_none()
@@ -142,7 +155,7 @@ pub(super) fn only_told(
             diagnosis.reduce(inquiry, less)?;
         }
     }
-    Ok(dropped)
+    Ok(())
 }
 
 /// The finding that is told least of those that are not.

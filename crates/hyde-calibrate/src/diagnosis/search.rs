@@ -295,7 +295,6 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     }
     calibrate_found(inquiry, &mut diagnosis)?;
     let dropped = only_told(inquiry, &mut diagnosis)?;
-    diagnosis.spread(inquiry)?;
     let nothing = diagnosis.findings.is_empty() && diagnosis.unexplained && !dropped.is_empty();
     if nothing && inquiry.barred.len() < thresholds.retries {
         // What stood in for another effect, better than this where both were begun, is out of its way.
