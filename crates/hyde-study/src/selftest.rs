@@ -37,8 +37,6 @@ use std::sync::atomic::AtomicBool;
 pub struct Options {
     /// Which cases, and of which sizes.
     pub asked: Asked,
-    /// The effects to plant; all if empty.
-    pub effects: Vec<String>,
     /// How many of the planted cases at most.
     pub sample: Option<usize>,
     /// The seed, instead of that of the diagnosis.
@@ -243,24 +241,18 @@ fn on_axis<T>(
     with(&axis, &ready, all)
 }
 
-/// The cases left of the effects named, and of the planted ones a sample.
+/// The cases, of the planted ones a sample; each effect that was named is known.
 fn chosen(
     options: &Options,
     mut all: Vec<Case>,
     hypotheses: &[Hypothesis],
 ) -> Result<Vec<Case>, String> {
     let known = |name: &String| hypotheses.iter().any(|h| h.effect == *name);
-    if let Some(unknown) = options.effects.iter().find(|name| !known(name)) {
+    if let Some(unknown) = options.asked.effects.iter().find(|name| !known(name)) {
         return Err(format!(
             "this diagnosis has no effect `{unknown}` with a site on the model; `hyde effects FILE` lists them"
         ));
     }
-    all.retain(|case| match case.kind {
-        Planting::Planted(number, _) | Planting::OpenSet(number, _) => {
-            options.effects.is_empty() || options.effects.contains(&hypotheses[number].effect)
-        }
-        Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => true,
-    });
     let is_planted = |case: &Case| matches!(case.kind, Planting::Planted(..));
     let count = all.iter().filter(|case| is_planted(case)).count();
     if let Some(most) = options.sample.filter(|most| *most < count) {

@@ -1,8 +1,7 @@
 //! `false_alarms_of_100`, `planted_top1_percent`, `withheld_not_claimed`, `claims_whose_interval_holds_zero`,
-//! `interval_coverage_percent`: what the verdicts of a diagnosis are worth, on the small axis; the first two on a rack and on
-//! a linear motor as well; and [`record`], which plants the whole library there. The command is this program itself; finished
-//! cases are kept below
-//! `target/selftest`, by seed, so that an interrupted measurement goes on.
+//! `interval_coverage_percent`: what the verdicts of a diagnosis are worth, on the small axis, on a rack and on a linear motor,
+//! withheld effects on the small axis; and [`record`], which plants the whole library there. The command is this program
+//! itself; finished cases are kept below `target/selftest`, by seed, so that an interrupted measurement goes on.
 
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::root;
@@ -184,35 +183,37 @@ fn withheld(session: &Session) -> Result<Measured, String> {
     ))
 }
 
-/// Effects that are claimed although their interval holds 0, over all cases.
+/// Effects that are claimed although their interval holds 0, over all cases of all axes.
 fn holds_zero(session: &Session) -> Result<Measured, String> {
-    let report = planted(session, Axis::Small)?;
-    let claims = cases(&report)?.iter().flat_map(|case| {
-        let effects = case["effects"].as_array();
-        effects.into_iter().flatten()
-    });
     let holds =
         |claim: &&Value| interval(claim).is_none_or(|(low, high)| low <= 0.0 && high >= 0.0);
-    Ok(told(
-        session,
-        Axis::Small,
-        claims.filter(holds).count() as f64,
-    ))
+    let mut count = 0;
+    for axis in Axis::ALL {
+        let report = planted(session, axis)?;
+        let claims = cases(&report)?
+            .iter()
+            .filter_map(|case| case["effects"].as_array());
+        count += claims.flatten().filter(holds).count();
+    }
+    Ok(told(session, Axis::Small, count as f64))
 }
 
-/// Of the effects planted and named first, those whose interval holds the size that was planted.
+/// Of the effects planted on all axes and named first, those whose interval holds the size that was planted.
 fn coverage(session: &Session) -> Result<Measured, String> {
-    let report = planted(session, Axis::Small)?;
     let (mut all, mut covered) = (0.0, 0.0);
-    for case in cases(&report)? {
-        let first = &case["effects"][0];
-        let named = case["planted"].is_object() && first["claimed"] == case["planted"];
-        let (Some((low, high)), Some(size), true) = (interval(first), case["size"].as_f64(), named)
-        else {
-            continue;
-        };
-        all += 1.0;
-        covered += f64::from(u8::from((low..=high).contains(&size)));
+    for axis in Axis::ALL {
+        let report = planted(session, axis)?;
+        for case in cases(&report)? {
+            let first = &case["effects"][0];
+            let named = case["planted"].is_object() && first["claimed"] == case["planted"];
+            let (Some((low, high)), Some(size), true) =
+                (interval(first), case["size"].as_f64(), named)
+            else {
+                continue;
+            };
+            all += 1.0;
+            covered += f64::from(u8::from((low..=high).contains(&size)));
+        }
     }
     Ok(told(session, Axis::Small, 100.0 * covered / all))
 }

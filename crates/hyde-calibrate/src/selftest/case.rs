@@ -10,7 +10,7 @@ const SHAPES: f64 = 3.0;
 const ABOUT_ZERO: f64 = 0.02;
 /// A parameter is off by so many times what it is uncertain by.
 const OFF: f64 = 2.0;
-/// The first of every so many hypotheses is planted and withheld from the search.
+/// The first of every so many hypotheses is planted and withheld from the search, where no effects are named.
 const OPEN_SET: usize = 4;
 
 /// How large a planted effect is.
@@ -75,6 +75,8 @@ pub struct Case {
 /// Which cases are wanted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
+    /// Effects to plant, or to withhold; all if empty.
+    pub effects: Vec<String>,
     /// Sizes of planted effects.
     pub sizes: Vec<Size>,
     /// Sets of random numbers for each planted effect and size.
@@ -119,15 +121,23 @@ pub fn cases(
             }
         }
     }
+    let is_wanted = |hypothesis: &Hypothesis| {
+        asked.effects.is_empty() || asked.effects.contains(&hypothesis.effect)
+    };
+    let wanted = || {
+        let each = hypotheses.iter().enumerate();
+        each.filter(|(_, hypothesis)| is_wanted(hypothesis))
+    };
     let largest = asked.sizes.iter().copied().reduce(larger);
     if let (true, Some(size)) = (asked.open_set, largest) {
-        for (number, hypothesis) in hypotheses.iter().enumerate().step_by(OPEN_SET) {
+        let every = if asked.effects.is_empty() { OPEN_SET } else { 1 };
+        for (number, hypothesis) in wanted().step_by(every) {
             let key = format!("unknown {} {}", named(hypothesis), shown(size));
             add(key, Planting::OpenSet(number, size));
         }
     }
     if asked.planted {
-        for (number, hypothesis) in hypotheses.iter().enumerate() {
+        for (number, hypothesis) in wanted() {
             for &size in &asked.sizes {
                 for seed in 0..asked.seeds {
                     let (name, size_name) = (named(hypothesis), shown(size));
@@ -278,6 +288,7 @@ mod tests {
         };
         let hypotheses = [hypothesis("A"), hypothesis("B")];
         let asked = Asked {
+            effects: Vec::new(),
             sizes: vec![Size::Part(0.1), Size::Detectable(0.5)],
             seeds: 3,
             empties: 2,
@@ -295,5 +306,13 @@ mod tests {
         keys.sort_unstable();
         keys.dedup();
         assert_eq!(keys.len(), all.len());
+
+        let named = Asked {
+            effects: vec!["B".to_owned()],
+            ..asked
+        };
+        let all = cases(&hypotheses, &[], &["x".to_owned()], &named);
+        assert_eq!(all.len(), 2 + 3 + 1 + 6);
+        assert_eq!(all[5].kind, Planting::OpenSet(1, Size::Part(0.1)));
     }
 }

@@ -88,7 +88,8 @@ pub fn tally(outcomes: &[(&Case, Outcome)], confounds: &dyn Fn(usize, usize) -> 
     for (case, outcome) in outcomes {
         let claims = outcome.claims.iter();
         let claimed: Vec<Found> = claims.map(|claim| Found::of(Some(claim))).collect();
-        let (counter, right) = match case.kind {
+        let right = outcome.is_right(&case.kind);
+        let counter = match case.kind {
             Planting::Planted(number, _) => {
                 let row = rows.entry(number).or_default();
                 row.hypothesis = number;
@@ -99,25 +100,21 @@ pub fn tally(outcomes: &[(&Case, Outcome)], confounds: &dyn Fn(usize, usize) -> 
                 }
                 continue;
             }
-            Planting::Empty => (&mut table.empty, outcome.verdict == Verdict::None),
-            Planting::Parameter(_) => (&mut table.parameter, outcome.verdict == Verdict::None),
-            Planting::Sensor(..) => (&mut table.sensor, claimed.is_empty()),
+            Planting::Empty => &mut table.empty,
+            Planting::Parameter(_) => &mut table.parameter,
+            Planting::Sensor(..) => &mut table.sensor,
             Planting::OpenSet(number, _) => {
                 if !outcome.is_visible() {
                     continue;
                 }
-                // A law of one's own at the site is what an unknown effect asks for.
                 let near = |found: &Found| match *found {
                     Found::Nothing | Found::Law => false,
                     Found::Effect(other) => confounds(number, other),
                 };
                 table.neighbours += usize::from(claimed.first().is_some_and(near));
                 table.laws += usize::from(claimed.contains(&Found::Law));
-                let known = |found: &Found| matches!(found, Found::Effect(_));
-                let claims_known = claimed.iter().any(known);
                 table.equivalents += usize::from(outcome.equivalent);
-                let right = !claims_known || outcome.unexplained || outcome.equivalent;
-                (&mut table.open_set, right)
+                &mut table.open_set
             }
         };
         counter.0 += 1;

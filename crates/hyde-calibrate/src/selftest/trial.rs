@@ -116,6 +116,23 @@ impl Outcome {
         self.expected.is_some_and(|(gain, gate)| shows(gain, gate))
     }
 
+    /// Whether it is the right answer: the effect planted where one was, with another one at most as its equal; no effect that
+    /// is known where the search did not know it, or that something is left beside it; else nothing. A law of one's own is
+    /// what an unknown effect asks for.
+    #[must_use]
+    pub fn is_right(&self, planted: &Planting) -> bool {
+        match *planted {
+            Planting::Planted(number, _) => self.names(number),
+            Planting::Empty | Planting::Parameter(_) => self.verdict == Verdict::None,
+            Planting::Sensor(..) => self.claims.is_empty(),
+            Planting::OpenSet(..) => {
+                let mut claims = self.claims.iter();
+                let claims_known = claims.any(|claim| claim.hypothesis.is_some());
+                !claims_known || self.unexplained || self.equivalent
+            }
+        }
+    }
+
     /// Whether the first claim is the hypothesis, or one of those it cannot be told from.
     #[must_use]
     pub fn names(&self, hypothesis: usize) -> bool {

@@ -101,7 +101,7 @@ pub(crate) struct SelftestArgs {
     /// Run only these kinds of cases
     #[arg(long, value_enum, value_delimiter = ',', value_name = "KINDS")]
     pub(crate) only: Vec<CaseKind>,
-    /// Plant only these effects; the diagnosis still searches for all
+    /// Plant, or withhold, only these effects; a diagnosis still searches for all, without the one withheld
     #[arg(long, value_delimiter = ',', value_name = "EFFECTS")]
     pub(crate) effects: Vec<String>,
     /// Maximum number of planted cases, chosen evenly from all

@@ -113,7 +113,6 @@ fn leave(folder: &Path, records: &[(String, String)]) -> Result<(), String> {
 fn options(args: &SelftestArgs) -> Result<Options, String> {
     Ok(Options {
         asked: asked(args)?,
-        effects: args.effects.clone(),
         sample: args.sample,
         seed: args.seed,
         interrupted: interruption::interrupted(),
@@ -160,6 +159,7 @@ fn asked(args: &SelftestArgs) -> Result<Asked, String> {
     let sizes: Result<Vec<Size>, String> = args.sizes.iter().map(size).collect();
     let wanted = |kind| args.only.is_empty() || args.only.contains(&kind);
     Ok(Asked {
+        effects: args.effects.clone(),
         sizes: sizes?,
         seeds: args.seeds.max(1),
         empties: if wanted(CaseKind::Empty) {

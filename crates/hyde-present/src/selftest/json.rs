@@ -118,6 +118,7 @@ fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
         "verdict": word(outcome.verdict),
         "effects": effects(told, &outcome.claims),
         "unexplained": outcome.unexplained,
+        "right": outcome.is_right(&case.kind),
     });
     if let Some(number) = planted {
         value["planted"] = named(told, number);
@@ -128,7 +129,6 @@ fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
         value["expected_gain"] = json!(outcome.expected.map(|(gain, _)| gain));
         value["gate"] = json!(outcome.expected.map(|(_, gate)| gate));
         value["shows"] = json!(outcome.is_visible());
-        value["right"] = json!(outcome.names(number));
         value["equivalent"] = json!(outcome.equivalent);
         if let Some(own) = &outcome.designed {
             value["designed"] = designed(told, own, number);
