@@ -4,7 +4,7 @@ use super::change::Change;
 use super::results::Result as Row;
 use crate::figures::{cpu_s, is_right};
 use crate::root;
-use hyde_calibrate::{Asked as Cases, Claim, Outcome, Planting, Size, Thresholds, Verdict};
+use hyde_calibrate::{Asked as Cases, Claim, Outcome, Planting, Size, Thresholds};
 use hyde_compiler::{Candidate, DiagnosisPlan, Laws};
 use hyde_study::diagnosis::{prepared, search};
 use hyde_study::selftest::{Ended, Kept, Options, Subject, selftest, word};
@@ -145,6 +145,7 @@ fn told(report: &Value) -> String {
 
 fn planted(count: usize, seed: u64, thresholds: Thresholds) -> Result<Vec<Answer>, String> {
     let asked = Cases {
+        effects: Vec::new(),
         sizes: vec![Size::Part(TYPICAL)],
         seeds: 1,
         empties: 0,
@@ -153,17 +154,12 @@ fn planted(count: usize, seed: u64, thresholds: Thresholds) -> Result<Vec<Answer
         open_set: false,
         sensors: false,
     };
-    let judged = |kind: &Planting, outcome: &Outcome| match kind {
-        Planting::Planted(number, _) => outcome.names(*number) || !outcome.is_visible(),
-        Planting::OpenSet(..) | Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => {
-            false
-        }
-    };
-    cases(asked, Some(count), seed, thresholds, &judged)
+    cases(asked, Some(count), seed, thresholds)
 }
 
 fn clean(count: usize, seed: u64, thresholds: Thresholds) -> Result<Vec<Answer>, String> {
     let asked = Cases {
+        effects: Vec::new(),
         sizes: vec![Size::Part(TYPICAL)],
         seeds: 1,
         empties: count,
@@ -172,8 +168,7 @@ fn clean(count: usize, seed: u64, thresholds: Thresholds) -> Result<Vec<Answer>,
         open_set: false,
         sensors: false,
     };
-    let judged = |_: &Planting, outcome: &Outcome| outcome.verdict == Verdict::None;
-    cases(asked, None, seed, thresholds, &judged)
+    cases(asked, None, seed, thresholds)
 }
 
 /// Cases of the self-test on the small axis, each with whether its answer is right.
@@ -182,7 +177,6 @@ fn cases(
     sample: Option<usize>,
     seed: u64,
     thresholds: Thresholds,
-    judged: &dyn Fn(&Planting, &Outcome) -> bool,
 ) -> Result<Vec<Answer>, String> {
     let Ready {
         plan,
@@ -200,14 +194,14 @@ fn cases(
     };
     let options = Options {
         asked,
-        effects: Vec::new(),
         sample,
         seed: Some(seed),
         interrupted: Arc::new(AtomicBool::new(false)),
     };
     let answered = |kind: &Planting, kept: &Kept| match kept {
         Ok(outcome) => {
-            let right = judged(kind, outcome);
+            let hidden = matches!(kind, Planting::Planted(..)) && !outcome.is_visible();
+            let right = hidden || outcome.is_right(kind);
             Answer {
                 right,
                 false_alarm: !right && *kind == Planting::Empty,
