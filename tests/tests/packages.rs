@@ -258,6 +258,38 @@ fn pages_link_to_each_other_and_need_nothing_else() {
 }
 
 #[test]
+fn a_page_tells_of_what_a_law_of_a_site_may_be_a_function_and_where_the_constants_of_a_shape_lie() {
+    let folder = tempfile::tempdir().unwrap();
+    let wires = "package wires \"sensors with a wire\";
+import SI.*;
+model Wire
+  input Length pulled;
+  parameter Length turn(min = 1 [mm]) = 50 [mm];
+  Angle drum = pulled*(1 [rev])/turn;
+  output Length s = drum*turn/(1 [rev]) over (place = drum, speed = der(drum));
+end Wire;
+function bump
+  input Length x, x_min, x_max;
+  input Length x0 = {x_min} in x_min .. x_max;
+  output Real f(cost = 1) = exp(-((x - x0)/(1 [mm]))^2) over (place);
+end bump;
+";
+    std::fs::write(folder.path().join("wires.hyde"), wires).unwrap();
+    let output = hyde(folder.path(), &["doc", "wires.hyde"]);
+    assert!(output.status.success(), "{}", errors(&output));
+    let page = std::fs::read_to_string(folder.path().join("doc/wires.html")).unwrap();
+    for shown in [
+        "<th>a law is over</th>",
+        "<td><code>place = drum</code>, <code>speed = der(drum)</code></td>",
+        "<td><code>x_min</code> … <code>x_max</code></td>",
+        "<td><code>cost = 1</code></td><td><code>place</code></td>",
+        "<td><code>min = 1 [mm]</code></td>",
+    ] {
+        assert!(page.contains(shown), "`{shown}` is missing:\n{page}");
+    }
+}
+
+#[test]
 fn every_link_of_the_library_s_pages_leads_somewhere() {
     let folder = tempfile::tempdir().unwrap();
     let output = hyde(folder.path(), &["doc", "--library"]);

@@ -65,7 +65,14 @@ pub fn load(
     let tree = counted(sources, id, diagnostics);
     let mut files = vec![(id, Arc::new(tree))];
     let own = files[0].1.package.as_ref();
-    let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).into_iter().collect();
+    let own = own.map(|(path, _)| (path.dotted(), path.span));
+    if let Some((own, span)) = &own
+        && hyde_library::package(own).is_some()
+        && !of_library(sources, id)
+    {
+        diagnostics.push(refused::hides_the_library((own, *span)));
+    }
+    let mut known: Vec<String> = own.map(|(own, _)| own).into_iter().collect();
     let mut first = packages_named(&files[0].1);
     if packages.whole_library {
         let whole = hyde_library::PACKAGES.iter();

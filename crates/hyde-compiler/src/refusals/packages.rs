@@ -7,6 +7,10 @@ diagnostics! {
         "the package `{package}` is in the library and in `{place}`"; at here, "which of them?";
         help "rename yours, and its file as well";
     }
+    fn hides_the_library((package, here): (&str, Span)) = warning Duplicate {
+        "this file hides the package `{package}` of the library"; at here, "the same name";
+        help "rename the package, and its file as well";
+    }
     fn called_otherwise((found, here): (&str, Span), place: &str, required: &str) = error PackagePath {
         "the package in `{place}` is called `{found}`"; at here, "its path requires `{required}`";
         help "write `package {required};`, or move the file: the package `a.b` is in `a/b.hyde`";

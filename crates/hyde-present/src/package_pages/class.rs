@@ -5,7 +5,8 @@ use super::html::{code, documentation, escaped, table};
 use super::links::Links;
 use hyde_diag::Span;
 use hyde_syntax::ast::{
-    self, Class, ClassBody, ClassKind, Declaration, Declarator, Declared, Element, Item, Prefix,
+    self, Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Declared, Element, Item,
+    Prefix,
 };
 
 /// The section of a class.
@@ -78,26 +79,14 @@ pub(super) fn experiments(file: &ast::File, number: usize, links: &Links<'_>) ->
     table(&["experiment", "of", ""], &rows)
 }
 
-/// The kinds of members in the order of a page.
-const TABLES: [(&str, [&str; 7]); 6] = [
-    ("Connectors", [""; 7]),
-    (
-        "Inputs and outputs",
-        ["name", "type", "unit", "", "value", "", ""],
-    ),
-    (
-        "Sizes and shapes",
-        ["name", "type", "unit", "", "value", "range", ""],
-    ),
-    (
-        "Parameters",
-        ["name", "type", "unit", "default", "spread", "source", ""],
-    ),
-    ("Parts", ["name", "model", "", "modified", "", "", ""]),
-    (
-        "Variables and sites",
-        ["name", "type", "unit", "", "value", "start", ""],
-    ),
+/// The kinds of members in the order of a page: heading, and what the columns of types, of values and of changes are there.
+const TABLES: [(&str, [&str; 3]); 6] = [
+    ("Connectors", ["", "", ""]),
+    ("Inputs and outputs", ["type", "value", "attributes"]),
+    ("Sizes and shapes", ["type", "value", "attributes"]),
+    ("Parameters", ["type", "default", "attributes"]),
+    ("Parts", ["model", "", "modified"]),
+    ("Variables and sites", ["type", "value", "attributes"]),
 ];
 
 struct Members<'l> {
@@ -159,16 +148,21 @@ impl<'l> Members<'l> {
             Some(_) => 4,
             None => 5,
         };
-        let row = self.row(kind, declaration, item, number, from);
+        let of = match kind {
+            0 | 4 => self.links.to_class(number, &declaration.type_name),
+            _ => self.links.to_quantity(number, &declaration.type_name),
+        };
+        let unit = self.links.unit(number, &declaration.type_name);
+        let row = self.row(declaration, item, (of, unit), from);
         self.tables[kind].push(row);
     }
 
+    /// The cells of a member, those of [`Self::heads`]; `of` is its type or model.
     fn row(
         &self,
-        kind: usize,
         declaration: &Declaration,
         item: &Declarator,
-        number: usize,
+        (of, unit): (String, String),
         from: Option<&str>,
     ) -> Vec<String> {
         let text =
@@ -217,60 +211,53 @@ impl<'l> Members<'l> {
             format!(" <i>{}</i>", code(&from))
         });
         let doc = code(item.doc.as_deref().unwrap_or_default()) + &inherited;
-        let kind_of = match kind {
-            0 | 4 => self.links.to_class(number, &declaration.type_name),
-            _ => self.links.to_quantity(number, &declaration.type_name),
-        };
-        let unit = self.links.unit(number, &declaration.type_name);
-        let none = String::new;
-        match kind {
-            0 => vec![name, kind_of, none(), none(), none(), none(), doc],
-            4 => vec![
-                name,
-                kind_of,
-                none(),
-                changes.join(", "),
-                none(),
-                none(),
-                doc,
-            ],
-            3 => vec![
-                name,
-                kind_of,
-                unit,
-                expr(item.binding.as_ref()),
-                item.prior.as_ref().map_or_else(none, |prior| {
-                    escaped(
-                        self.library
-                            .sources
-                            .text(prior.span)
-                            .trim_start_matches(['~', ' ']),
-                    )
-                }),
-                code(item.source.as_deref().unwrap_or_default()),
-                doc,
-            ],
-            2 => vec![
-                name,
-                kind_of,
-                unit,
-                none(),
-                expr(item.binding.as_ref()),
-                item.within.as_ref().map_or_else(none, |range| {
-                    format!("{} … {}", text(range.from.span), text(range.to.span))
-                }),
-                doc,
-            ],
-            _ => vec![
-                name,
-                kind_of,
-                unit,
-                none(),
-                expr(item.binding.as_ref()),
-                changes.join(", "),
-                doc,
-            ],
-        }
+        let range = item.within.as_ref().map(|range| {
+            let (from, to) = (text(range.from.span), text(range.to.span));
+            format!("{from} … {to}")
+        });
+        let spread = item.prior.as_ref().map(|prior| {
+            let spread = self.library.sources.text(prior.span);
+            escaped(spread.trim_start_matches(['~', ' ']))
+        });
+        let over: Vec<String> = item.over.iter().map(|own| self.over(own)).collect();
+        vec![
+            name,
+            of,
+            unit,
+            expr(item.binding.as_ref()),
+            range.unwrap_or_default(),
+            spread.unwrap_or_default(),
+            changes.join(", "),
+            over.join(", "),
+            code(item.source.as_deref().unwrap_or_default()),
+            doc,
+        ]
+    }
+
+    /// `place = a.s`, or of a shape the `place` alone.
+    fn over(&self, own: &Argument) -> String {
+        let value = self.library.sources.text(own.value.span);
+        let name = own.name.as_ref().map(|name| format!("{} = ", name.text));
+        format!(
+            "<code>{}</code>",
+            escaped(&(name.unwrap_or_default() + value))
+        )
+    }
+
+    /// The heads of columns.
+    fn heads([of, value, changes]: [&str; 3]) -> [&str; 10] {
+        [
+            "name",
+            of,
+            "unit",
+            value,
+            "range",
+            "spread",
+            changes,
+            "a law is over",
+            "source",
+            "",
+        ]
     }
 
     fn html(&self) -> String {
@@ -281,7 +268,7 @@ impl<'l> Members<'l> {
             .map(|((heading, heads), rows)| {
                 let list = match *heading {
                     "Connectors" => format!("<p>{}</p>\n", inline(rows)),
-                    _ => table(heads, rows),
+                    _ => table(&Self::heads(*heads), rows),
                 };
                 format!("<h4>{heading}</h4>\n{list}")
             })
