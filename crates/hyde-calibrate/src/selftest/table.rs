@@ -2,7 +2,7 @@
 
 use super::case::{Case, Planting};
 use super::trial::{Claim, Outcome};
-use crate::diagnosis::{Relation, Verdict};
+use crate::diagnosis::Relation;
 use std::collections::BTreeMap;
 
 /// What is claimed.
