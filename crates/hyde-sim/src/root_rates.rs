@@ -74,7 +74,7 @@ pub(crate) fn root_rates(
     let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, at) else {
         return vec![RootRate::default(); state.program.relations.len()];
     };
-    let differential = state.differential.clone();
+    let (differential, (_, atol)) = (state.differential.clone(), state.tolerances);
     let mut rates_of = |t: f64, y: Vec<f64>| -> Option<Vec<f64>> {
         let yp = yp.to_vec();
         let mut beside = Moment { t, y, yp };
@@ -82,7 +82,7 @@ pub(crate) fn root_rates(
         let (rates, ..) = rates_at(Function::Roots, state, consistent, beside.at())?;
         Some(rates)
     };
-    let otherwise = rates_of(t, rounded_otherwise(y, &differential));
+    let otherwise = rates_of(t, rounded_otherwise(y, &differential, atol));
     let found = now.iter().enumerate().map(|(number, &now)| RootRate {
         now,
         mean: now,
@@ -118,8 +118,9 @@ pub(crate) fn root_rates(
 }
 
 /// States as they might as well be rounded: each by its own number of units in the last place, for what two have in common
-/// would cancel where their difference counts.
-fn rounded_otherwise(y: &[f64], differential: &[bool]) -> Vec<f64> {
+/// would cancel where their difference counts. A state near zero has those of its tolerance: what a step leaves of a motion
+/// that begins with a high derivative has any sign.
+fn rounded_otherwise(y: &[f64], differential: &[bool], atol: f64) -> Vec<f64> {
     let each = y.iter().zip(differential).enumerate();
     each.map(|(number, (value, differential))| {
         let units = match (*differential, number % 4) {
@@ -129,7 +130,8 @@ fn rounded_otherwise(y: &[f64], differential: &[bool]) -> Vec<f64> {
             (true, 2) => 1.0,
             (true, _) => -2.0,
         };
-        value * (1.0 + units * f64::EPSILON)
+        let size = if value.abs() > atol { *value } else { atol };
+        value + units * f64::EPSILON * size
     })
     .collect()
 }

@@ -36,18 +36,20 @@ const FAR_OF_TOLERANCE: f64 = 100.0;
 
 /// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
 /// guard `g > 0` and the other with `g < 0`, must not both see theirs true. A state that has come to zero from afar, as the
-/// height of a ball that lies down, is known to rounding of what it was.
+/// height of a ball that lies down, is known to rounding of what it was; one that has just left it, to rounding of its
+/// tolerance.
 pub(crate) fn rounding(state: &mut State<'_>, at: At<'_>, largest: &[f64]) -> Vec<f64> {
     let At { t, y, yp } = at;
     let program = state.program;
     let mut rounding = vec![0.0; program.relations.len()];
     let partials = state.partials(Function::Roots, at);
     let delayed = state.delayed().to_vec();
+    let (_, atol) = state.tolerances;
     for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
         let argument = match entry.wrt {
             Wrt::Unknown(column) if state.differential[column] => {
                 let most = largest.get(column).copied().unwrap_or(0.0);
-                most.max(y[column].abs())
+                most.max(y[column].abs()).max(atol)
             }
             Wrt::Unknown(column) => y[column],
             Wrt::Derivative(column) => yp[column],

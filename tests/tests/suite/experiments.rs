@@ -71,3 +71,34 @@ fn what_sticks_takes_steps_of_a_record() {
         assert!((value - expected).abs() < 1e-8, "{measures:?}");
     }
 }
+
+/// All frictions of the machine are set to nothing, as `hyde budget` does. The axes rest until the controller ticks, and the
+/// speeds begin with derivatives so high that rounding decides in which direction a bearing that holds nothing breaks away.
+#[test]
+fn a_machine_without_friction_runs_by_both_methods() {
+    let machine = Example::load("examples/machine/machine.hyde", Some("circle")).unwrap();
+    let mut machine = machine.set("table.F", 0.0).set("table.b", 0.0);
+    machine = machine
+        .set("saddle.saddle.F", 0.0)
+        .set("saddle.saddle.b", 0.0);
+    for axis in ["X", "Y"] {
+        for friction in [
+            "motor.mu_1",
+            "motor.c_theta",
+            "belt.mu_1",
+            "screw.T_nut",
+            "screw.mu_1",
+        ] {
+            machine = machine.set(&format!("{axis}.{friction}"), 0.0);
+        }
+    }
+    let solve = "solve ida(rtol = 1e-4, atol = 1e-8) stop 4.6 [s]";
+    let places = ["esdirk", "ida"].map(|method| {
+        let short = format!("solve {method}(rtol = 1e-6, atol = 1e-8) stop 0.3 [s]");
+        let (compiled, run) = machine.clone().rewritten(solve, &short).run().unwrap();
+        let place = compiled.program.output("table.s").unwrap();
+        *run.results.column(place).unwrap().last().unwrap()
+    });
+    assert!((places[0] - places[1]).abs() < 1e-6, "{places:?}");
+    assert!(places[0].abs() > 1e-3, "{places:?}");
+}
