@@ -84,7 +84,7 @@ fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
 
 /// Of each shape its text and its closed form, of v, x, t and two constants.
 type Form = fn(f64, f64, f64, f64, f64) -> f64;
-const FORMS: [(&str, &str, Form); 29] = [
+const FORMS: [(&str, &str, Form); 31] = [
     ("speed", "v/v1", |v, _, _, _, _| v / 0.2),
     ("magnitude", "noEvent(abs(v))/v1", |v, _, _, _, _| {
         v.abs() / 0.2
@@ -128,6 +128,8 @@ const FORMS: [(&str, &str, Form); 29] = [
         |v, _, _, a, b| (-((v.abs() - a) / b).powi(2)).exp(),
     ),
     ("place", "x/x1", |_, x, _, _, _| x / 0.05),
+    ("place_from", "x/x1", |_, x, _, _, _| x / 0.05),
+    ("place_from", "1", |_, _, _, _, _| 1.0),
     ("square_of_place", "(x/x1)^2", |_, x, _, _, _| {
         x * x / 0.0025
     }),

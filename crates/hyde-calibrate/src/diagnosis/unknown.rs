@@ -99,12 +99,20 @@ pub(super) fn propose(
     gates: Gates,
 ) -> Result<(), Unsupported> {
     let last = diagnosis.stage();
-    if settled(declared, &last, inquiry.thresholds) && !is_chain(inquiry, diagnosis) {
+    let here = match settled(declared, &last, inquiry.thresholds) {
+        true => sites_of_made_up(inquiry, diagnosis),
+        false => inquiry.sites.to_vec(),
+    };
+    if here.is_empty() {
         return Ok(());
     }
+    let there = Inquiry {
+        sites: &here,
+        ..*inquiry
+    };
     let places = match places {
         Some(places) => Some(places),
-        None => Places::of(inquiry, declared)?,
+        None => Places::of(&there, declared)?,
     };
     let lawful = diagnosis.frozen.is_empty();
     let law = |places: Places<'_>| match lawful {
@@ -194,33 +202,29 @@ pub(super) fn beside(
     Ok(found)
 }
 
-/// Whether several effects were taken in at one place where a law may act: they may be the parts of one that is not known.
-fn is_chain(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> bool {
+/// The sites where what explains all may be made up of what is not there: several effects for one, or one that shapes bend
+/// until it looks like another. Of a single effect with one shape at most there is no simpler law.
+fn sites_of_made_up(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> Vec<Site> {
     let findings = diagnosis.findings.iter();
-    let hypotheses: Vec<&Hypothesis> = findings
+    let effects: Vec<&Hypothesis> = findings
         .filter_map(|finding| inquiry.hypotheses.get(finding.hypothesis))
         .collect();
-    let may_act = |one: &Hypothesis| inquiry.sites.iter().any(|site| site.path == one.site);
-    match hypotheses.as_slice() {
-        [first, others @ ..] if !others.is_empty() => {
-            may_act(first)
-                && others
-                    .iter()
-                    .all(|other| may_act(other) && at_one_place(first, other))
-        }
-        _ => false,
+    if effects.len() < 2 && effects.iter().all(|effect| effect.shapes.len() < 2) {
+        return Vec::new();
     }
+    let is_near = |site: &&Site| effects.iter().any(|effect| at_one_place(effect, site));
+    inquiry.sites.iter().filter(is_near).cloned().collect()
 }
 
-/// Whether two effects are at one connector, or one of them on a component that is connected there.
-fn at_one_place(one: &Hypothesis, other: &Hypothesis) -> bool {
+/// Whether an effect and a law are at one connector, or one of them on a component that is connected there.
+fn at_one_place(one: &Hypothesis, other: &Site) -> bool {
     let is_at = |a: &String, b: &String| a == b || below(a, b).is_some() || below(b, a).is_some();
     let mut places = one.aliases.iter().chain([&one.site]);
     places.any(|a| {
         other
             .aliases
             .iter()
-            .chain([&other.site])
+            .chain([&other.path])
             .any(|b| is_at(a, b))
     })
 }

@@ -149,9 +149,10 @@ impl Law {
                 products = own
                     .iter()
                     .flat_map(|one| {
-                        products
-                            .iter()
-                            .map(move |product| format!("{product}*{one}"))
+                        products.iter().map(move |product| match one.as_str() {
+                            "1" => product.clone(),
+                            one => format!("{product}*{one}"),
+                        })
                     })
                     .collect();
                 let values = factor.values();
