@@ -405,8 +405,8 @@ static SIGNS: [Habit; 19] = [
     word(
         "'",
         Place::Inside,
-        "a name cannot be written in quotes",
-        "names have letters, digits and `_`: `x_ref`",
+        "Hyde has no `'`",
+        "the derivative of `x` by time is `der(x)`; a name has letters, digits and `_`, and no quotes: `x_ref`",
     ),
 ];
 

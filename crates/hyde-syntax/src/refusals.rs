@@ -53,6 +53,10 @@ diagnostics! {
         "two signs stand one behind the other"; at here, "a sum, or an uncertainty?";
         help "the uncertainty of a parameter is written `~ ±{number}` behind its value; a sum with a negative number is written `+ (-{number})`";
     }
+    fn derivative_without_parentheses(of: &Name, here: Span) = error Syntax {
+        "the parentheses of a derivative are missing"; at here, "`der` is a function";
+        help "write `der({})`", of.text;
+    }
     fn range_downwards(here: Span, (low, high): (&str, &str)) = error Syntax {
         "a range goes from the lower bound to the upper one"; at here, "goes downwards";
         help "write `{low} .. {high}`";

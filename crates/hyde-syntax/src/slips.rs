@@ -33,6 +33,12 @@ pub(crate) fn find(text: &str, start: usize, at: usize, expected: &str) -> Optio
     if let Some(slip) = of_connection(text, start, here) {
         return Some(slip);
     }
+    if let Some(slip) = last_end(text, at) {
+        return Some(slip);
+    }
+    if other_line && let Some(slip) = opening(text, start, at) {
+        return Some(slip);
+    }
     let end = Some(start + before.len())
         .filter(|_| other_line && !before.is_empty() && !before.ends_with([';', '{', '}']))
         .map(|_| start + recover::end_of_last_word(&text[start..at]))
@@ -70,24 +76,68 @@ fn of_connection(text: &str, start: usize, here: &str) -> Option<Slip> {
     })
 }
 
-/// The end of a call whose last parenthesis stands at `at`, if the statement ends there without a `;`.
+/// The end of a call that is a statement, is not understood at `at` and ends without a `;`: what it lacks is found at its last
+/// parenthesis, or where it might have been an expression.
 fn end_of_call(text: &str, start: usize, at: usize) -> Option<usize> {
-    if !text[at..].starts_with(')') {
+    let mut tokens = Scanner::new(text, start);
+    let (_, callee) = tokens.next()?;
+    let (_, opening) = tokens.next()?;
+    if !callee.starts_with(is_word) || opening != "(" {
         return None;
     }
-    let mut depth = 0_usize;
-    for (place, token) in Scanner::new(text, start).take_while(|(place, _)| *place <= at) {
-        match token {
+    let mut depth = 1_usize;
+    let (close, _) = tokens.find(|(_, token)| {
+        match *token {
             "(" => depth += 1,
-            ")" if place == at && depth != 1 => return None,
-            ")" => depth = depth.checked_sub(1)?,
+            ")" => depth -= 1,
             _ => {}
         }
-    }
-    let end = at + 1;
+        depth == 0
+    })?;
+    let end = close + 1;
     let (next, token) = Scanner::new(text, end).next()?;
     let other_line = text.get(end..next)?.contains('\n');
-    (other_line && token.starts_with(is_word)).then_some(end)
+    (at <= close && other_line && token.starts_with(is_word)).then_some(end)
+}
+
+/// A word that is missing behind the condition or the range with which a statement begins, on whose line nothing follows.
+fn opening(text: &str, start: usize, at: usize) -> Option<Slip> {
+    let (missing, help) = match word(&text[start..]) {
+        "if" => (
+            "`then`",
+            "write `then` behind the condition: `if a > b then`",
+        ),
+        "when" => (
+            "`then`",
+            "write `then` behind the condition: `when x > 1 [m] then`",
+        ),
+        "for" => (
+            "`loop`",
+            "write `loop` behind the range: `for i in 1:n loop`",
+        ),
+        _ => return None,
+    };
+    let before = Scanner::new(text, start).take_while(|(place, _)| *place < at);
+    let mut before = before.map(|(_, token)| token);
+    let open = before.all(|token| !matches!(token, "then" | "loop" | ";"));
+    open.then(|| Slip {
+        missing: Some(missing),
+        behind: Some(start + recover::end_of_last_word(&text[start..at])),
+        help,
+    })
+}
+
+/// An `end NAME` that ends without a `;`, and the text with it.
+fn last_end(text: &str, at: usize) -> Option<Slip> {
+    let mut tokens = Scanner::new(text, at);
+    let (_, end) = tokens.next()?;
+    let (place, name) = tokens.next()?;
+    let is_end = end == "end" && name.starts_with(is_word) && tokens.next().is_none();
+    is_end.then(|| Slip {
+        missing: Some("`;`"),
+        behind: Some(place + name.len()),
+        help: "end the last line with `;`",
+    })
 }
 
 /// A choice as it is written in Python, C or Matlab.

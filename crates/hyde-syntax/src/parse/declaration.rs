@@ -6,6 +6,7 @@ use crate::ast::{
     Modes, Prefix, Prior,
 };
 use crate::grammar::Rule;
+use crate::refusals;
 
 impl Builder<'_> {
     /// From one of the nodes that `element` yields, clocked parts and sections apart.
@@ -193,6 +194,15 @@ impl Builder<'_> {
                 Rule::subscript => declaration.dims = self.subscripts(part),
                 _ => declaration.declarators.push(self.declarator(part)?),
             }
+        }
+        if let (Some("der"), Some(first)) = (
+            declaration.type_name.as_word(),
+            declaration.declarators.first(),
+        ) {
+            let here = declaration.type_name.span.to(first.name.span);
+            let refusal = refusals::derivative_without_parentheses(&first.name, here);
+            self.diagnostics.push(refusal);
+            return None;
         }
         Some(declaration)
     }
