@@ -21,6 +21,9 @@ use crate::written::{Node, Part, Written};
 use crate::{forms, habits, matcher, nesting, recover, refusals, slips, words};
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 
+/// What is found where nothing else is.
+const END: &str = "the end of the file";
+
 /// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
 pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> ast::File {
     let text = &sources.get(file).text;
@@ -227,9 +230,7 @@ impl<'a> Parser<'a> {
             let opened = Span::new(self.file, start, start + word.len());
             return refusals::block_without_end(word, opened, span);
         }
-        let found = found.map_or("the end of the file".to_owned(), |(_, token)| {
-            format!("`{token}`")
-        });
+        let found = found.map_or(END.to_owned(), |(_, token)| format!("`{token}`"));
         if let Some(found) = habits::find(self.text, start, begin) {
             let span = Span::new(self.file, found.begin, found.end);
             return refusals::habit_of_another_language(found.habit, span);
@@ -242,7 +243,7 @@ impl<'a> Parser<'a> {
         let (span, found) = match missing {
             Some((_, behind)) => {
                 let next = recover::Scanner::new(self.text, behind).next();
-                let found = next.map_or(found, |(_, token)| format!("`{token}`"));
+                let found = next.map_or(END.to_owned(), |(_, token)| format!("`{token}`"));
                 (Span::new(self.file, behind, behind), found)
             }
             None => (span, found),
