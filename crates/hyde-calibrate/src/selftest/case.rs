@@ -130,7 +130,8 @@ pub fn cases(
     };
     let largest = asked.sizes.iter().copied().reduce(larger);
     if let (true, Some(size)) = (asked.open_set, largest) {
-        let every = if asked.effects.is_empty() { OPEN_SET } else { 1 };
+        let all = asked.effects.is_empty();
+        let every = if all { OPEN_SET } else { 1 };
         for (number, hypothesis) in wanted().step_by(every) {
             let key = format!("unknown {} {}", named(hypothesis), shown(size));
             add(key, Planting::OpenSet(number, size));
