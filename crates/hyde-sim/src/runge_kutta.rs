@@ -197,13 +197,14 @@ impl<S: System> RungeKutta<S> {
     /// A step in s of about the length `wanted`, so that a few of them lead to a stop `left` s ahead: all of one length, and
     /// of the length of the last one where that serves, for each other length takes a factorization.
     fn fitting(&self, wanted: f64, left: f64) -> f64 {
-        let (count, coefficients) = (left / wanted, self.system.coefficients());
+        let count = left / wanted;
         if count > MOST_FITTED {
-            // Factors serve a length again only while the Jacobian is the same.
-            let again = self.factors.come_back() && coefficients.is_some();
-            return if again { on_ladder(wanted) } else { wanted };
+            return match self.factors.come_back() {
+                true => on_ladder(wanted),
+                false => wanted,
+            };
         }
-        let lengths = self.factors.lengths_s(coefficients);
+        let lengths = self.factors.lengths_s(self.system.coefficients());
         let serving = lengths.filter_map(|length| {
             let count = (left / length).round();
             let fits = (left - count * length).abs() <= 1e-9 * left;
