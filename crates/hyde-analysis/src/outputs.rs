@@ -122,6 +122,11 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
             measured.clocked,
         ));
     }
+    for replayed in &experiment.replayed {
+        let name = format!("replayed {}", replayed.name);
+        dae.outputs
+            .push(single(name, replayed.value, &replayed.quantity, true));
+    }
     for (number, reduction) in experiment.reductions.iter().enumerate() {
         let quantity = dae.variables[reduction.var].quantity.clone();
         dae.outputs.push(single(

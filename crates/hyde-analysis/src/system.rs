@@ -203,6 +203,9 @@ impl System {
         for measured in &mut flat.experiment.measured {
             each(arena, &mut measured.value);
         }
+        for replayed in &mut flat.experiment.replayed {
+            each(arena, &mut replayed.value);
+        }
         for reduction in &mut flat.experiment.reductions {
             each(arena, &mut reduction.value);
             if let Some(condition) = &mut reduction.condition {

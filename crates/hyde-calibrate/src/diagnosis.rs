@@ -26,6 +26,7 @@
 //! claims         the last gate: what is claimed is told from its neutral value            diagnosis/claims.rs
 //! calibrated     a model with states of its own calibrated with a gain for them           diagnosis/calibrated.rs
 //! curve          an effect that was found over its variable, with what the records say    diagnosis/curve.rs
+//! command timing whether the model puts a replayed command out when it was recorded        diagnosis/command_timing.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
@@ -33,6 +34,7 @@ mod alike;
 mod apart;
 mod calibrated;
 mod claims;
+mod command_timing;
 mod contest;
 mod curve;
 mod edges;
@@ -63,6 +65,7 @@ pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment, Relation};
 pub use claims::FoundModel;
+pub use command_timing::CommandTiming;
 pub use curve::{CurvePoint, FoundCurve, Over};
 pub use finding::{Finding, Quantity};
 pub use hypothesis::{Built, Hypothesis, Knob};

@@ -31,7 +31,7 @@ mod refusals;
 mod selftest;
 
 pub use diagnosis::{
-    Alternative, Author, Built, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
+    Alternative, Author, Built, CommandTiming, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
     FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, LawVariable,
     Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen, Site, Summand,
     TABLE, Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,

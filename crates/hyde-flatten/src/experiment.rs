@@ -34,7 +34,7 @@ use hyde_syntax::ast::{self, ExperimentItem};
 use hyde_units::Dimension;
 use measure::push_measure;
 use measured::measured;
-use replay::record_replays;
+use replay::{keep_commands, record_replays};
 use response::measured_responses;
 use stimulus::stimulus;
 
@@ -121,8 +121,10 @@ pub(crate) fn experiment(model: &mut Model<'_, '_>, root: InstanceId) {
         }
     }
     measured_responses(model, &experiment.items, root);
-    if model.input.form == Form::Recorded {
-        record_replays(model);
+    match model.input.form {
+        Form::Run => {}
+        Form::Observed => keep_commands(model),
+        Form::Recorded => record_replays(model),
     }
 }
 

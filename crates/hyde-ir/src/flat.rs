@@ -208,6 +208,23 @@ pub struct Measured {
     pub origin: Origin,
 }
 
+/// `replay x = column` of a variable that clocked parts give, in the observed form: what the model would put out itself.
+#[derive(Clone, Debug)]
+pub struct Replayed {
+    /// The variable.
+    pub name: String,
+    /// The record and its column, which takes its place.
+    pub column: ColumnId,
+    /// What the model has for it.
+    pub value: ExprId,
+    /// Where it comes from the tick before: the equation `u = pre(w)` that alone decides it.
+    pub register: Option<Origin>,
+    /// Dimension and printed unit.
+    pub quantity: Quantity,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
 /// How a signal over time becomes one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReductionKind {
@@ -348,6 +365,8 @@ pub struct Experiment {
     pub records: Vec<String>,
     /// Measured channels.
     pub measured: Vec<Measured>,
+    /// Commands that a record takes the place of.
+    pub replayed: Vec<Replayed>,
     /// Reductions that measures and expectations use.
     pub reductions: Vec<Reduction>,
     /// Measures and expectations.

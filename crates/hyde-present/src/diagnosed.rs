@@ -17,4 +17,4 @@ pub use json::json;
 pub use page::html;
 pub use text::{text, wrapped};
 
-use hyde_study::diagnosis::{Diagnosed, Tried, named, suspicion, verdict};
+use hyde_study::diagnosis::{Diagnosed, Tried, named, suspicion, timing, verdict};

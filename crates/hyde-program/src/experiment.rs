@@ -26,6 +26,21 @@ pub struct Measured {
     pub origin: Origin,
 }
 
+/// A command that the model's clocked parts give, in the observed form, where a record takes its place.
+#[derive(Clone, Debug)]
+pub struct Replayed {
+    /// Its name.
+    pub name: String,
+    /// The number of the recorded column among those of the program.
+    pub column: usize,
+    /// The output that the model has for it.
+    pub output: usize,
+    /// The equation `u = pre(w)` that alone decides it, where there is one.
+    pub register: Option<Origin>,
+    /// Where the replay is written.
+    pub origin: Origin,
+}
+
 /// A reduction of an output.
 #[derive(Clone, Debug)]
 pub struct Reduction {
@@ -200,6 +215,8 @@ pub struct Experiment {
     pub records: Vec<String>,
     /// Measured channels.
     pub measured: Vec<Measured>,
+    /// Commands that a record takes the place of.
+    pub replayed: Vec<Replayed>,
     /// Reductions.
     pub reductions: Vec<Reduction>,
     /// Measures and expectations.

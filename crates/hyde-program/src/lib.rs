@@ -33,7 +33,7 @@ mod reacting;
 pub use event::{Assignment, Clock, Delay, InitialCondition, Pin, Reaction, Relation};
 pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
-    Moment, RecordedResponse, Reduction, ScaledColumn, Stepped,
+    Moment, RecordedResponse, Reduction, Replayed, ScaledColumn, Stepped,
 };
 pub use foreign::{Foreign, ForeignInstance, ForeignPart, ForeignTick, Stopped};
 pub use given::{Given, Misfit};

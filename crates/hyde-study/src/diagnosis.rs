@@ -5,6 +5,7 @@
 //! search       looks for what is missing                          diagnosis/search.rs
 //! held out     what the held-out records do not confirm           diagnosis/held_out.rs
 //! verdict      one sentence, and what is doubtful about it        diagnosis/verdict.rs
+//! timing       a command that is put out at another time          diagnosis/timing.rs
 //! model        the old text with a new model behind               diagnosis/model.rs
 //! ```
 
@@ -12,6 +13,7 @@ mod held_out;
 mod model;
 mod prepared;
 mod search;
+pub mod timing;
 pub mod verdict;
 
 pub use held_out::{Refused, Worse, agreed};
@@ -23,7 +25,7 @@ use crate::Project;
 use crate::comparison::RecordErrors;
 use crate::unknown;
 use hyde_calibrate::{
-    Cause, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations, Rejection, ResidualMap,
+    Cause, CommandTiming, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations, Rejection, ResidualMap,
     Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
@@ -55,6 +57,8 @@ pub struct Diagnosed<'a> {
     pub curves: Vec<Option<FoundCurve>>,
     /// Why the calibrated model does not follow the records, if it does not.
     pub causes: Vec<Cause>,
+    /// When the model puts out the commands that are replayed, beside when they were recorded.
+    pub timings: Vec<CommandTiming>,
     /// Hypotheses that could not be put on the model, each with the reason.
     pub hindered: Vec<(usize, String)>,
     /// Hypotheses that were found first and dropped.
@@ -116,6 +120,7 @@ impl<'a> Diagnosed<'a> {
             whiteness,
             curves: Vec::new(),
             causes: Vec::new(),
+            timings: Vec::new(),
             hindered: hindered(project, candidates, found),
             barred: {
                 let barred = found.barred.iter().copied();

@@ -16,8 +16,8 @@ use crate::model::Model;
 use crate::model::call::clocks_of;
 use crate::model::lower::Resolved;
 use crate::refusals::records as refused;
-use hyde_diag::MadeBy;
-use hyde_ir::flat::Measured;
+use hyde_diag::{MadeBy, Origin};
+use hyde_ir::flat::{Equation, Measured, Replayed};
 use hyde_ir::{Expr as Ir, ExprId, FlatModel, Interpolation, Memo, VarId, VariableKind};
 use hyde_syntax::ast::{Drive, ExperimentItem};
 
@@ -204,6 +204,60 @@ pub(super) fn record_replays(model: &mut Model<'_, '_>) {
             origin: origin.made_by(MadeBy::Experiment),
         });
     }
+}
+
+/// Keeps what clocked parts would put out where a column takes its place: the two are to agree along the measured motion.
+pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
+    for number in 0..model.replays.len() {
+        let Replay {
+            drive,
+            var,
+            root,
+            value,
+            ..
+        } = model.replays[number];
+        let Some(value) = value else { continue };
+        let put_out = model.flat.variables[var].kind == VariableKind::Continuous
+            && !clocks_of(&model.flat, value).is_empty();
+        let mut preparation = Vec::new();
+        let column = recorded(model, &drive.value, root, false, &mut preparation);
+        let (true, true, Some((column, _))) = (put_out, preparation.is_empty(), column) else {
+            continue;
+        };
+        let origin = model.tree.origin(root, drive.target.span);
+        model.flat.experiment.replayed.push(Replayed {
+            name: drive.target.dotted(),
+            column,
+            value,
+            register: register(&model.flat, value).cloned(),
+            quantity: model.flat.variables[var].quantity.clone(),
+            origin: origin.made_by(MadeBy::Experiment),
+        });
+    }
+}
+
+/// The equation `u = pre(w)` that alone decides what is held, by way of variables that are equal.
+fn register(flat: &FlatModel, value: ExprId) -> Option<&Origin> {
+    let Ir::Var(mut var, _) = flat.exprs[value] else {
+        return None;
+    };
+    for _ in 0..flat.variables.len() {
+        if let VariableKind::Held(_, source) = flat.variables[var].kind {
+            var = source;
+        }
+        let clocked = flat.clocked_equations.iter();
+        let clocked = clocked.map(|own| &own.equation);
+        let is_lhs = |own: &&Equation| matches!(flat.exprs[own.lhs], Ir::Var(of, _) if of == var);
+        let equation = flat.equations.iter().chain(clocked).find(is_lhs)?;
+        if matches!(flat.exprs[equation.rhs], Ir::Pre(..)) {
+            return Some(&equation.origin);
+        }
+        let Ir::Var(next, _) = flat.exprs[equation.rhs] else {
+            return None;
+        };
+        var = next;
+    }
+    None
 }
 
 fn span_of(model: &Model<'_, '_>, replay: usize) -> hyde_diag::Span {

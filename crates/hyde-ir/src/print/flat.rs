@@ -331,6 +331,17 @@ impl Printer<'_> {
                 comment(&measured.origin, self.sources)
             );
         }
+        for replayed in &experiment.replayed {
+            let column = &self.flat.columns[replayed.column];
+            let _ = writeln!(
+                out,
+                "  {}.{} replayed for {}{}",
+                column.record,
+                column.column,
+                self.names.expr(replayed.value),
+                comment(&replayed.origin, self.sources)
+            );
+        }
         for (number, reduction) in experiment.reductions.iter().enumerate() {
             let kind = match reduction.kind {
                 ReductionKind::Max => "max",

@@ -7,7 +7,7 @@ use hyde_ir::flat;
 use hyde_ir::{Expr, ExprId, Id as _, VariableKind};
 use hyde_program::{
     Bode, Cut, Experiment, Measure, Measured, MeasuredResponse, Moment, RecordedResponse,
-    Reduction, ScaledColumn, Stepped,
+    Reduction, Replayed, ScaledColumn, Stepped,
 };
 
 /// What is asked of a run, with the outputs that it reads.
@@ -19,9 +19,9 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
     let first_curve = first_account - figures::outputs(&known.figures);
     let first_cut = first_curve - known.cuts.len();
     let conditions = known.conditions().count();
-    let first_measured =
-        first_cut - known.measured.len() - known.reductions.len() - conditions - responses;
-    let first_reduction = first_measured + known.measured.len();
+    let first_reduction = first_cut - known.reductions.len() - conditions - responses;
+    let first_replayed = first_reduction - known.replayed.len();
+    let first_measured = first_replayed - known.measured.len();
     let first_condition = first_reduction + known.reductions.len();
     let mut conditions_before = first_condition..;
     let mut next_response = first_condition + conditions;
@@ -44,6 +44,18 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                 late: measured.late.clone(),
                 unit: measured.quantity.unit.clone(),
                 origin: measured.origin.clone(),
+            })
+            .collect(),
+        replayed: known
+            .replayed
+            .iter()
+            .zip(first_replayed..)
+            .map(|(replayed, output)| Replayed {
+                name: replayed.name.clone(),
+                column: replayed.column.index(),
+                output,
+                register: replayed.register.clone(),
+                origin: replayed.origin.clone(),
             })
             .collect(),
         reductions: known

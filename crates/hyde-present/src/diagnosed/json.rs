@@ -1,6 +1,6 @@
 //! `report.json`, as book/src/report.schema.json says. Numbers are SI.
 
-use super::{Diagnosed, suspicion, verdict};
+use super::{Diagnosed, suspicion, timing, verdict};
 use crate::comparison;
 use crate::unknown;
 use hyde_calibrate::{CurvePoint, FittedParameter, FoundCurve, Quantity, Relation, Verdict};
@@ -28,6 +28,7 @@ pub fn json(told: &Diagnosed<'_>) -> Value {
         "doubts": verdict::doubts(told),
         "refused": refused(told),
         "frozen": frozen(told),
+        "command_timings": command_timings(told),
         "effects": effects(told),
         "unexplained": told.found.unexplained,
         "unknown": told
@@ -63,6 +64,26 @@ fn refused(told: &Diagnosed<'_>) -> Value {
             "site": own.site,
             "size": quantity(&own.size),
             "worse": worse.collect::<Vec<Value>>(),
+        })
+    });
+    each.collect()
+}
+
+/// When the model puts out replayed commands.
+fn command_timings(told: &Diagnosed<'_>) -> Value {
+    let each = told.timings.iter().map(|own| {
+        let edit = timing::edit(told, own).map(
+            |own| json!({ "file": own.file, "line": own.line, "from": own.from, "to": own.to }),
+        );
+        json!({
+            "command": timing::command(told, own),
+            "clock": told.found.program.clocks[own.clock].name,
+            "period_s": own.period_s,
+            "late_s": own.late_s,
+            "error": own.error,
+            "error_moved": own.error_moved,
+            "of_column": own.of_column,
+            "edit": edit,
         })
     });
     each.collect()

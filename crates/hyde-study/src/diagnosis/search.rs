@@ -51,7 +51,7 @@ fn searched<T>(
         .filter(|candidate| plan.selects(candidate))
         .collect();
     let mut hypotheses: Vec<Hypothesis> = candidates.iter().map(hypothesis).collect();
-    let (found, agreed, curves) = {
+    let (found, agreed, curves, timings) = {
         let project = &calibration.project;
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
         let headers = crate::headers(&project.records);
@@ -77,7 +77,8 @@ fn searched<T>(
         let count = if curves { found.findings.len() } else { 0 };
         let curves = (0..count).map(|number| found.curve(&inquiry, number));
         let curves: Vec<_> = curves.collect();
-        (found, agreed, curves)
+        let timings = found.command_timings(&inquiry)?;
+        (found, agreed, curves, timings)
     };
     if let Some(own) = &found.observer {
         calibration.observer = own.clone();
@@ -99,6 +100,7 @@ fn searched<T>(
     Ok(Ok(tell(&Diagnosed {
         causes,
         curves,
+        timings,
         ..told
     })))
 }

@@ -1,6 +1,6 @@
 //! The verdict in one sentence, and its doubt.
 
-use super::{Diagnosed, Refused, named};
+use super::{Diagnosed, Refused, named, timing};
 use crate::comparison::{self, RecordErrors};
 use crate::unobservable::reason;
 use hyde_calibrate::{Finding, Frozen, Quantity, Relation, Verdict};
@@ -8,6 +8,13 @@ use hyde_units::{NamedUnit, drawn_in, shown, significant};
 
 /// One sentence, without the stop at its end.
 pub fn sentence(told: &Diagnosed<'_>) -> String {
+    let timings = timing::wrong(told).map(|own| timing::short(told, own));
+    let all = std::iter::once(missing(told)).chain(timings);
+    all.collect::<Vec<String>>().join("; ")
+}
+
+/// What is missing.
+fn missing(told: &Diagnosed<'_>) -> String {
     let names: Vec<String> = told
         .found
         .findings
@@ -162,7 +169,9 @@ pub fn grounds(told: &Diagnosed<'_>) -> Vec<String> {
 
 /// What speaks against the verdict.
 pub fn doubts(told: &Diagnosed<'_>) -> Vec<String> {
-    let mut doubts: Vec<String> = told.refused.iter().map(Refused::sentence).collect();
+    let timings = timing::wrong(told).flat_map(|own| timing::about(told, own));
+    let mut doubts: Vec<String> = timings.collect();
+    doubts.extend(told.refused.iter().map(Refused::sentence));
     doubts.extend(told.found.frozen.iter().map(|own| frozen(told, own)));
     let causes = told.causes.iter();
     doubts.extend(causes.map(|cause| reason(told.calibration, cause)));

@@ -1,0 +1,412 @@
+//! [`CommandTiming`]: whether the model puts a command out when the recorded one was put out.
+//!
+//! A replay cuts the loop (C4): the record drives the axis, and the controller of the model drives nothing. Here it runs beside
+//! the track of the observer. At each of its ticks it samples what the observer knows of the axis, a state that is measured
+//! as it was measured, and what it puts out is compared with the record moved by whole rows:
+//!
+//! ```text
+//! e_s(k) = recorded(k + s) - computed(k)     s = 0       the model is right in time
+//!                                            s < 0       it puts its command out later than the true controller
+//! ```
+//! The least sum of squares decides, the mean of each e_s left out: an integrator begins where nobody knows. The axis
+//! itself tells a controller that is late from a column that was recorded early: it follows what really drove it.
+
+use super::inquiry::Inquiry;
+use super::search::Diagnosis;
+use super::stage::Ground;
+use crate::observer::{Innovations, Track, Vectors, When};
+use crate::plant::Unsupported;
+use crate::records::Recording;
+use hyde_program::{Constant, Function, Point, Program, TickWrt, Workspace, Wrt};
+
+/// Numerics: periods of the clock by which the record is moved, either way.
+const PERIODS: i64 = 3;
+/// Numerics: a clock ticks with the rows of a record if its times are multiples of theirs but for this part of a row.
+const WITH_ROWS: f64 = 1e-3;
+
+/// When the model puts out a command, beside when it was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommandTiming {
+    /// The number of the command among those that the program replays.
+    pub replayed: usize,
+    /// By how much the model is later than the record, s: negative where it is earlier, 0 where it is right.
+    pub late_s: f64,
+    /// The number of the clock that puts it out.
+    pub clock: usize,
+    /// Its period, s.
+    pub period_s: f64,
+    /// From its tick to the change of what it holds, s.
+    pub delay_s: f64,
+    /// Recorded less computed command, rms over that of the command, its mean left out.
+    pub error: f64,
+    /// The same with the record moved by that.
+    pub error_moved: f64,
+    /// The axis follows the command that is moved better than the one that was recorded: the column is at fault.
+    pub of_column: bool,
+}
+
+impl Diagnosis {
+    /// Every replayed command whose controller ticks with the rows of all records and explains it for the most part.
+    ///
+    /// # Errors
+    /// The model has no fixed-step form.
+    pub fn command_timings(
+        &self,
+        inquiry: &Inquiry<'_>,
+    ) -> Result<Vec<CommandTiming>, Unsupported> {
+        let (ground, stage) = (self.ground(inquiry), self.stage());
+        if self.program.experiment.replayed.is_empty() || !self.program.foreign.is_empty() {
+            return Ok(Vec::new());
+        }
+        let set = ground.set_in(&self.program, &stage.values());
+        let tracks = stage.tracks(&ground)?;
+        let numbers = 0..self.program.experiment.replayed.len();
+        let each = numbers.filter_map(|number| timing(&self.program, &ground, &tracks, &set, number));
+        each.collect()
+    }
+}
+
+fn timing(
+    program: &Program,
+    ground: &Ground<'_>,
+    tracks: &[Track<'_>],
+    set: &[(usize, f64)],
+    number: usize,
+) -> Option<Result<CommandTiming, Unsupported>> {
+    let replayed = &program.experiment.replayed[number];
+    let mut sums = Vec::new();
+    let mut clock = None;
+    for (recording, track) in ground.recordings.iter().zip(tracks) {
+        let p = recording.parameters(program, set);
+        let controller = Controller::of(program, recording, &p, replayed.output)?;
+        let computed = controller.along(track, recording, &p);
+        let recorded = &recording.columns[replayed.column];
+        let own = moved(recorded, &computed, recording.first_row, controller.most());
+        let constant = |which| program.kernels.constant(which, &p).unwrap_or(0.0);
+        let number = controller.clocks[0].clock;
+        let times = (constant(Constant::Period(number)), constant(Constant::Delay(number)));
+        clock = Some((recording.step_s, number, times));
+        if sums.is_empty() {
+            sums = vec![(0.0, 0.0); own.len()];
+        }
+        if sums.len() != own.len() {
+            return None;
+        }
+        for (sum, own) in sums.iter_mut().zip(own) {
+            *sum = (sum.0 + own.0, sum.1 + own.1);
+        }
+    }
+    let part = |place: usize| {
+        let (error, command): (f64, f64) = sums[place];
+        if command > 0.0 { error / command } else { f64::NAN }
+    };
+    let (step_s, clock, (period_s, delay_s)) = clock?;
+    let middle = sums.len() / 2;
+    let best = (0..sums.len()).min_by(|&a, &b| part(a).total_cmp(&part(b)))?;
+    let thresholds = ground.thresholds;
+    if !(part(best) <= thresholds.a_part) {
+        return None;
+    }
+    let clear = part(best) <= (1.0 - thresholds.mostly) * part(middle);
+    let best = if clear { best } else { middle };
+    let rows = middle as i64 - best as i64;
+    let of_column = if rows == 0 {
+        Ok(false)
+    } else {
+        follows_moved(program, ground, set, replayed.column, -rows)
+    };
+    Some(of_column.map(|of_column| CommandTiming {
+        replayed: number,
+        late_s: rows as f64 * step_s,
+        clock,
+        period_s,
+        delay_s,
+        error: part(middle).sqrt(),
+        error_moved: part(best).sqrt(),
+        of_column,
+    }))
+}
+
+/// Of every shift of the record, in rows from `-most` to `most`: the sum of squares of its difference from what was computed,
+/// and that of the record, means left out. The same rows of what was computed count in all.
+fn moved(recorded: &[f64], computed: &[f64], first_row: usize, most: i64) -> Vec<(f64, f64)> {
+    let edge = usize::try_from(most).unwrap_or(0);
+    let rows = first_row.max(edge)..computed.len().saturating_sub(edge);
+    let variation = |values: &mut dyn Iterator<Item = f64>| {
+        let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        values.filter(|value| value.is_finite()).for_each(|value| {
+            count += 1.0;
+            sum += value;
+            squares += value * value;
+        });
+        (squares - sum * sum / f64::max(count, 1.0)).max(0.0)
+    };
+    (-most..=most)
+        .map(|shift| {
+            let at = |row: usize| {
+                let moved = usize::try_from(row as i64 + shift).unwrap_or(0);
+                recorded.get(moved).copied().unwrap_or(f64::NAN)
+            };
+            let mut errors = rows.clone().map(|row| at(row) - computed[row]);
+            let mut commands = rows.clone().map(at);
+            (variation(&mut errors), variation(&mut commands))
+        })
+        .collect()
+}
+
+/// Whether the axis follows a column better that is moved by some rows.
+fn follows_moved(
+    program: &Program,
+    ground: &Ground<'_>,
+    set: &[(usize, f64)],
+    column: usize,
+    rows: i64,
+) -> Result<bool, Unsupported> {
+    let squares = |recording: &Recording| -> Result<f64, Unsupported> {
+        let all = Innovations::of(program, recording, ground.observer, set)?;
+        Ok(all.channels.iter().flatten().map(|e| e * e).sum())
+    };
+    let mut gained = 0.0;
+    for recording in ground.recordings {
+        let mut other = recording.clone();
+        let own = &recording.columns[column];
+        let last = own.len().saturating_sub(1) as i64;
+        let at = |row: usize| own[usize::try_from((row as i64 + rows).clamp(0, last)).unwrap_or(0)];
+        other.columns[column] = (0..own.len()).map(at).collect();
+        gained += squares(recording)? - squares(&other)?;
+    }
+    Ok(gained > 0.0)
+}
+
+/// The clocked parts that put a command out.
+struct Controller<'p> {
+    program: &'p Program,
+    /// What the model has for the command.
+    output: usize,
+    clocks: Vec<Ticks>,
+    /// The places of the memory that they write, and those that hold what they put out.
+    own: Vec<usize>,
+    /// Channels that measure one unknown: channel, output, position, derivative.
+    measured: Vec<(usize, usize, usize, f64)>,
+}
+
+/// When a clock ticks, in rows.
+struct Ticks {
+    clock: usize,
+    every: i64,
+    first: i64,
+    /// From its tick to the change of what is held.
+    delay: i64,
+}
+
+impl<'p> Controller<'p> {
+    /// `None` where a clock does not tick with the rows.
+    fn of(
+        program: &'p Program,
+        recording: &Recording,
+        p: &[f64],
+        output: usize,
+    ) -> Option<Self> {
+        let in_rows = |which| {
+            let rows = program.kernels.constant(which, p)? / recording.step_s;
+            let whole = rows.round();
+            ((rows - whole).abs() <= WITH_ROWS * whole.max(1.0)).then_some(whole as i64)
+        };
+        let mut clocks = Vec::new();
+        for clock in needed(program, output, p) {
+            let every = in_rows(Constant::Period(clock))?;
+            let first = in_rows(Constant::Phase(clock))?;
+            let delay_s = program.kernels.constant(Constant::Delay(clock), p)?;
+            let delay = (delay_s / recording.step_s - WITH_ROWS).ceil().max(0.0) as i64;
+            if every < 1 {
+                return None;
+            }
+            clocks.push(Ticks {
+                clock,
+                every,
+                first,
+                delay,
+            });
+        }
+        if clocks.is_empty() {
+            return None;
+        }
+        let writes = |own: &Ticks| {
+            let held = program.holds.iter().filter(|hold| hold.clock == own.clock);
+            let held = held.flat_map(|hold| hold.target..hold.target + hold.len);
+            let targets = program.kernels.tick_targets(own.clock);
+            targets.into_iter().chain(held).collect::<Vec<usize>>()
+        };
+        Some(Self {
+            program,
+            output,
+            own: clocks.iter().flat_map(writes).collect(),
+            clocks,
+            measured: measured(program, p),
+        })
+    }
+
+    /// The rows by which the record is moved at most.
+    fn most(&self) -> i64 {
+        PERIODS * self.clocks.iter().map(|own| own.every).max().unwrap_or(1)
+    }
+
+    /// What it puts out in each row.
+    fn along(&self, track: &Track<'_>, recording: &Recording, p: &[f64]) -> Vec<f64> {
+        let program = self.program;
+        let command = program.kernels.some_rows(Function::Outputs, &[self.output]);
+        let shown: Vec<usize> = self.measured.iter().map(|own| own.1).collect();
+        let shown = program.kernels.some_rows(Function::Outputs, &shown);
+        let mut workspace = Workspace::new(program.n_work);
+        let (mut room, mut outputs) = (Vectors::default(), vec![0.0; self.measured.len()]);
+        let mut memory: Option<Vec<f64>> = None;
+        let mut pending: Vec<(i64, usize, Vec<f64>)> = Vec::new();
+        let mut computed = Vec::with_capacity(recording.rows());
+        for row in 0..recording.rows() {
+            let at = track.point(row, When::After, p, &mut room);
+            let mut z = at.z.to_vec();
+            if let Some(memory) = &memory {
+                self.own.iter().for_each(|&place| z[place] = memory[place]);
+            }
+            let mut y = at.y.to_vec();
+            shown.evaluate(at, &mut workspace, &mut outputs);
+            for (&(channel, _, position, derivative), output) in self.measured.iter().zip(&outputs) {
+                let error = recording.error(channel, row, *output);
+                if error.is_finite() {
+                    y[position] += error / derivative;
+                }
+            }
+            for own in self.ticking(row as i64) {
+                let at = Point { y: &y, z: &z, ..at };
+                let mut after = z.clone();
+                program.kernels.tick(own.clock, at, &mut workspace, &mut after);
+                z = after;
+                let holds = program.holds.iter().filter(|hold| hold.clock == own.clock);
+                pending.extend(holds.map(|hold| {
+                    let values = z[hold.source..hold.source + hold.len].to_vec();
+                    (row as i64 + own.delay, hold.target, values)
+                }));
+            }
+            pending.retain(|(when, target, values)| {
+                let due = *when <= row as i64;
+                if due {
+                    z[*target..*target + values.len()].copy_from_slice(values);
+                }
+                !due
+            });
+            let mut value = [0.0];
+            let at = Point { y: &y, z: &z, ..at };
+            command.evaluate(at, &mut workspace, &mut value);
+            computed.push(value[0]);
+            memory = Some(z);
+        }
+        computed
+    }
+
+    /// The clocks that tick in a row, in the order of the data.
+    fn ticking(&self, row: i64) -> impl Iterator<Item = &Ticks> {
+        let order = self.program.clock_order.iter();
+        let known = order.filter_map(|&clock| self.clocks.iter().find(|own| own.clock == clock));
+        known.filter(move |own| row >= own.first && (row - own.first) % own.every == 0)
+    }
+}
+
+/// The clocks by which an output changes, and those that they read.
+fn needed(program: &Program, output: usize, p: &[f64]) -> Vec<usize> {
+    let entries = program.kernels.still_entries(Function::Outputs);
+    let mut read: Vec<usize> = entries
+        .iter()
+        .filter(|entry| entry.row == output)
+        .filter_map(|entry| match entry.wrt {
+            Wrt::Memory(place) => Some(place),
+            Wrt::Unknown(_)
+            | Wrt::Derivative(_)
+            | Wrt::Parameter(_)
+            | Wrt::Delayed(_)
+            | Wrt::Time => None,
+        })
+        .collect();
+    let (y, z, u) = start(program, p);
+    let at = Point {
+        t: 0.0,
+        y: &y,
+        yp: &vec![0.0; y.len()],
+        z: &z,
+        u: &u,
+        p,
+    };
+    let mut workspace = Workspace::new(program.n_work);
+    let mut clocks: Vec<usize> = Vec::new();
+    while let Some(place) = read.pop() {
+        let held = program
+            .holds
+            .iter()
+            .find(|hold| (hold.target..hold.target + hold.len).contains(&place))
+            .map(|hold| hold.clock);
+        let all = 0..program.clocks.len();
+        let writes = |clock: &usize| program.kernels.tick_targets(*clock).contains(&place);
+        let Some(clock) = held.or_else(|| all.into_iter().find(writes)) else {
+            continue;
+        };
+        if !clocks.contains(&clock) {
+            clocks.push(clock);
+            let partials = program.kernels.tick_partials(clock, at, &mut workspace);
+            read.extend(partials.into_iter().filter_map(|(_, wrt, _)| match wrt {
+                TickWrt::Memory(place) => Some(place),
+                TickWrt::Unknown(_)
+                | TickWrt::Derivative(_)
+                | TickWrt::Delayed(_)
+                | TickWrt::Parameter(_) => None,
+            }));
+        }
+    }
+    clocks
+}
+
+/// Channels that measure one unknown alone, as it is: channel, output, position, derivative.
+fn measured(program: &Program, p: &[f64]) -> Vec<(usize, usize, usize, f64)> {
+    let (y, z, u) = start(program, p);
+    let at = Point {
+        t: 0.0,
+        y: &y,
+        yp: &vec![0.0; y.len()],
+        z: &z,
+        u: &u,
+        p,
+    };
+    let entries = program.partials(Function::Outputs);
+    let mut values = vec![0.0; entries.len()];
+    let mut workspace = Workspace::new(program.n_work);
+    program
+        .kernels
+        .partials(Function::Outputs, at, &mut workspace, &mut values);
+    let channels = program.experiment.measured.iter().enumerate();
+    let plain = channels.filter(|(_, own)| own.preparation.is_empty() && own.late.is_none());
+    plain
+        .filter_map(|(channel, own)| {
+            let mut by = entries.iter().zip(&values);
+            let mut by = by.by_ref().filter(|(entry, _)| entry.row == own.output);
+            let ((entry, value), None) = (by.next()?, by.next()) else {
+                return None;
+            };
+            match entry.wrt {
+                Wrt::Unknown(position) if *value != 0.0 => {
+                    Some((channel, own.output, position, *value))
+                }
+                Wrt::Unknown(_)
+                | Wrt::Derivative(_)
+                | Wrt::Parameter(_)
+                | Wrt::Memory(_)
+                | Wrt::Delayed(_)
+                | Wrt::Time => None,
+            }
+        })
+        .collect()
+}
+
+/// The start values of a program, with nothing that drives it.
+fn start(program: &Program, p: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
+    program.kernels.start(p, &mut y, &mut z);
+    (y, z, vec![0.0; 2 * program.columns.len() + program.delays.len()])
+}
