@@ -208,7 +208,7 @@ pub struct Measured {
     pub origin: Origin,
 }
 
-/// `replay x = column` of a variable that clocked parts give, in the observed form: what the model would put out itself.
+/// `replay x = column` of a continuous variable, in the observed form: what the model itself has for it.
 #[derive(Clone, Debug)]
 pub struct Replayed {
     /// The variable.
@@ -365,7 +365,7 @@ pub struct Experiment {
     pub records: Vec<String>,
     /// Measured channels.
     pub measured: Vec<Measured>,
-    /// Commands that a record takes the place of.
+    /// Variables that a record takes the place of.
     pub replayed: Vec<Replayed>,
     /// Reductions that measures and expectations use.
     pub reductions: Vec<Reduction>,

@@ -26,7 +26,7 @@ pub struct Measured {
     pub origin: Origin,
 }
 
-/// A command that the model's clocked parts give, in the observed form, where a record takes its place.
+/// A variable that a record takes the place of, in the observed form: a command, if clocked parts put it out.
 #[derive(Clone, Debug)]
 pub struct Replayed {
     /// Its name.
@@ -215,7 +215,7 @@ pub struct Experiment {
     pub records: Vec<String>,
     /// Measured channels.
     pub measured: Vec<Measured>,
-    /// Commands that a record takes the place of.
+    /// Variables that a record takes the place of.
     pub replayed: Vec<Replayed>,
     /// Reductions.
     pub reductions: Vec<Reduction>,

@@ -206,7 +206,8 @@ pub(super) fn record_replays(model: &mut Model<'_, '_>) {
     }
 }
 
-/// Keeps what clocked parts would put out where a column takes its place: the two are to agree along the measured motion.
+/// Keeps what the model itself has for a continuous variable where a column takes its place: a command that clocked parts put
+/// out is to agree with it along the measured motion.
 pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
     for number in 0..model.replays.len() {
         let Replay {
@@ -217,8 +218,7 @@ pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
             ..
         } = model.replays[number];
         let Some(value) = value else { continue };
-        let put_out = model.flat.variables[var].kind == VariableKind::Continuous
-            && !clocks_of(&model.flat, value).is_empty();
+        let put_out = model.flat.variables[var].kind == VariableKind::Continuous;
         let mut preparation = Vec::new();
         let column = recorded(model, &drive.value, root, false, &mut preparation);
         let (true, true, Some((column, _))) = (put_out, preparation.is_empty(), column) else {
