@@ -31,10 +31,10 @@ mod refusals;
 mod selftest;
 
 pub use diagnosis::{
-    Alternative, Author, Built, CommandTiming, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
-    FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, LawVariable,
-    Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen, Site, Summand,
-    TABLE, Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,
+    Alternative, Author, Built, CommandTiming, CurvePoint, Diagnosis, Experiment, Factor, Finding,
+    FoundCurve, FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law,
+    LawVariable, Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen, Site,
+    Summand, TABLE, Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,
 };
 pub use fit::{
     Cause, Fit, FittedParameter, Fold, Identifiability, Information, Joint, LIMIT, Part, Problem,

@@ -25,8 +25,8 @@ use crate::Project;
 use crate::comparison::RecordErrors;
 use crate::unknown;
 use hyde_calibrate::{
-    Cause, CommandTiming, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations, Rejection, ResidualMap,
-    Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
+    Cause, CommandTiming, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations,
+    Rejection, ResidualMap, Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
 use std::collections::BTreeMap;

@@ -30,6 +30,7 @@ mod first_order;
 mod frequency_responses;
 mod gradients;
 mod held_parts;
+mod late_command;
 mod late_sensor;
 mod law_shapes;
 mod ledger;

@@ -61,7 +61,8 @@ impl Diagnosis {
         let set = ground.set_in(&self.program, &stage.values());
         let tracks = stage.tracks(&ground)?;
         let numbers = 0..self.program.experiment.replayed.len();
-        let each = numbers.filter_map(|number| timing(&self.program, &ground, &tracks, &set, number));
+        let each =
+            numbers.filter_map(|number| timing(&self.program, &ground, &tracks, &set, number));
         each.collect()
     }
 }
@@ -84,7 +85,10 @@ fn timing(
         let own = moved(recorded, &computed, recording.first_row, controller.most());
         let constant = |which| program.kernels.constant(which, &p).unwrap_or(0.0);
         let number = controller.clocks[0].clock;
-        let times = (constant(Constant::Period(number)), constant(Constant::Delay(number)));
+        let times = (
+            constant(Constant::Period(number)),
+            constant(Constant::Delay(number)),
+        );
         clock = Some((recording.step_s, number, times));
         if sums.is_empty() {
             sums = vec![(0.0, 0.0); own.len()];
@@ -98,7 +102,11 @@ fn timing(
     }
     let part = |place: usize| {
         let (error, command): (f64, f64) = sums[place];
-        if command > 0.0 { error / command } else { f64::NAN }
+        if command > 0.0 {
+            error / command
+        } else {
+            f64::NAN
+        }
     };
     let (step_s, clock, (period_s, delay_s)) = clock?;
     let middle = sums.len() / 2;
@@ -201,12 +209,7 @@ struct Ticks {
 
 impl<'p> Controller<'p> {
     /// `None` where a clock does not tick with the rows.
-    fn of(
-        program: &'p Program,
-        recording: &Recording,
-        p: &[f64],
-        output: usize,
-    ) -> Option<Self> {
+    fn of(program: &'p Program, recording: &Recording, p: &[f64], output: usize) -> Option<Self> {
         let in_rows = |which| {
             let rows = program.kernels.constant(which, p)? / recording.step_s;
             let whole = rows.round();
@@ -270,7 +273,8 @@ impl<'p> Controller<'p> {
             }
             let mut y = at.y.to_vec();
             shown.evaluate(at, &mut workspace, &mut outputs);
-            for (&(channel, _, position, derivative), output) in self.measured.iter().zip(&outputs) {
+            for (&(channel, _, position, derivative), output) in self.measured.iter().zip(&outputs)
+            {
                 let error = recording.error(channel, row, *output);
                 if error.is_finite() {
                     y[position] += error / derivative;
@@ -279,7 +283,9 @@ impl<'p> Controller<'p> {
             for own in self.ticking(row as i64) {
                 let at = Point { y: &y, z: &z, ..at };
                 let mut after = z.clone();
-                program.kernels.tick(own.clock, at, &mut workspace, &mut after);
+                program
+                    .kernels
+                    .tick(own.clock, at, &mut workspace, &mut after);
                 z = after;
                 let holds = program.holds.iter().filter(|hold| hold.clock == own.clock);
                 pending.extend(holds.map(|hold| {
@@ -408,5 +414,9 @@ fn measured(program: &Program, p: &[f64]) -> Vec<(usize, usize, usize, f64)> {
 fn start(program: &Program, p: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
     program.kernels.start(p, &mut y, &mut z);
-    (y, z, vec![0.0; 2 * program.columns.len() + program.delays.len()])
+    (
+        y,
+        z,
+        vec![0.0; 2 * program.columns.len() + program.delays.len()],
+    )
 }

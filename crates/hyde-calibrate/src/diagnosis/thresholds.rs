@@ -100,11 +100,11 @@ thresholds! {
     explained_likeness: f64 = 0.1,
         because "rounding of an encoder correlates neighbouring samples without a missing effect",
         removed 0.0;
-    /// Share of the residual in excess of noise that findings must explain, or the verdict is unknown; that an effect must promise to be tried before a law; of what a law could explain that it must; of an effect that must be a function of one variable to be drawn as a curve.
+    /// Share of the residual in excess of noise that findings must explain, or the verdict is unknown; that an effect must promise to be tried before a law; of what a law could explain that it must; of an effect that must be a function of one variable to be drawn as a curve; of the difference between a recorded and a computed command that a shift in time must explain.
     mostly: f64 = 0.5,
         because "most is more than half",
         removed 0.0;
-    /// Share below which a part is not worth a word: of the residual beside an unknown rest; of the first term's improvement in the third of a law, which is a series otherwise.
+    /// Share below which a part is not worth a word: of the residual beside an unknown rest; of the first term's improvement in the third of a law, which is a series otherwise; of a recorded command that the controller of the model may leave for their times to be compared.
     a_part: f64 = 0.1,
         because "a tenth changes no conclusion",
         removed 0.0;

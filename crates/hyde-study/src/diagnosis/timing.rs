@@ -30,7 +30,10 @@ pub fn short(told: &Diagnosed<'_>, own: &CommandTiming) -> String {
         false => format!("the model puts out {command} {} too {late}", ms(own.late_s)),
         true => {
             let recorded = if own.late_s > 0.0 { "early" } else { "late" };
-            format!("the column of {command} was recorded {} too {recorded}", ms(own.late_s))
+            format!(
+                "the column of {command} was recorded {} too {recorded}",
+                ms(own.late_s)
+            )
         }
     }
 }
@@ -48,7 +51,9 @@ pub fn about(told: &Diagnosed<'_>, own: &CommandTiming) -> Vec<String> {
         ms(own.late_s)
     );
     let axis = match own.of_column {
-        false => "the axis follows the recorded command at its own times, so the time is an error of the model",
+        false => {
+            "the axis follows the recorded command at its own times, so the time is an error of the model"
+        }
         true => "the axis follows the moved command better, so the time is an error of the record",
     };
     vec![found, format!("{axis}: {}", repair(told, own))]
@@ -61,21 +66,29 @@ fn repair(told: &Diagnosed<'_>, own: &CommandTiming) -> String {
         let sign = if late { "subtract" } else { "add" };
         return format!("{sign} {by} in the times of that column");
     }
-    if let Some(Edit { file, line, from, to }) = edit(told, own) {
+    if let Some(Edit {
+        file,
+        line,
+        from,
+        to,
+    }) = edit(told, own)
+    {
         return format!("write `{to}` instead of `{from}` ({file}:{line})");
     }
     let delay_s = own.delay_s - own.late_s;
     if delay_s >= 0.0 && delay_s <= own.period_s {
         return format!("the `delay` of the clock {clock} is to be {}", ms(delay_s));
     }
-    format!("{clock} has a delay, or a variable of the tick before, that the true controller does not have")
+    format!(
+        "{clock} has a delay, or a variable of the tick before, that the true controller does not have"
+    )
 }
 
 /// The equation `u = pre(w)` that is the whole delay, without it.
 pub fn edit(told: &Diagnosed<'_>, own: &CommandTiming) -> Option<Edit> {
     let replayed = &told.found.program.experiment.replayed[own.replayed];
     let span = replayed.register.as_ref()?.span;
-    let whole = (own.late_s - own.period_s).abs() <= 0.5 * own.period_s;
+    let whole = (own.late_s - own.period_s).abs() <= 0.01 * own.period_s;
     if own.of_column || !whole {
         return None;
     }
