@@ -12,7 +12,9 @@
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! contest        survivors beside each other: gates, and which of them is taken in        diagnosis/contest.rs
 //! profile        the last of a fit: numbers of effects at the bottom of their profiles    diagnosis/profile.rs
-//! search         what is missing: the verdict and its findings                            diagnosis/search.rs
+//! evidence       what gains have to reach, and what is left to explain                    diagnosis/evidence.rs
+//! search         what is missing, one effect after the other                              diagnosis/search.rs
+//! answer         what was found: the verdict, its findings, the model                     diagnosis/answer.rs
 //! finding        an effect that was taken in, with its quantities                          diagnosis/finding.rs
 //! forward        its branches, two at most, and their rounds                              diagnosis/forward.rs
 //! pair           two effects that show only together                                      diagnosis/pair.rs
@@ -20,17 +22,20 @@
 //! apart          what alternatives are to each other, and what would tell them apart      diagnosis/apart.rs
 //! alike          whether two effects do the same wherever the axis is                     diagnosis/alike.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
+//! undetermined   shapes that the records do not determine stay as declared                diagnosis/undetermined.rs
+//! spread         intervals over all values that the records allow of such shapes          diagnosis/spread.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
 //! holding        an observer that holds the modes of what was found, too                 diagnosis/holding.rs
 //! edges          what an effect with modes may leave of what it explains                  diagnosis/edges.rs
 //! claims         the last gate: what is claimed is told from its neutral value            diagnosis/claims.rs
 //! calibrated     a model with states of its own calibrated with a gain for them           diagnosis/calibrated.rs
 //! curve          an effect that was found over its variable, with what the records say    diagnosis/curve.rs
-//! command timing whether the model puts a replayed command out when it was recorded        diagnosis/command_timing.rs
+//! command timing whether the model puts a replayed command out when it was recorded       diagnosis/command_timing.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
 mod alike;
+mod answer;
 mod apart;
 mod calibrated;
 mod claims;
@@ -38,6 +43,7 @@ mod command_timing;
 mod contest;
 mod curve;
 mod edges;
+mod evidence;
 mod exchange;
 mod finding;
 mod forward;
@@ -53,6 +59,7 @@ mod prune;
 mod runs;
 mod scan;
 mod search;
+mod spread;
 mod stage;
 mod thresholds;
 mod trial;
@@ -63,15 +70,18 @@ mod whole;
 pub(crate) use projection::Projection;
 pub(crate) use stage::{Ground, Stage, flat};
 
+pub use answer::{Diagnosis, Verdict};
 pub use apart::{Alternative, Experiment, Relation};
 pub use claims::FoundModel;
 pub use command_timing::CommandTiming;
 pub use curve::{CurvePoint, FoundCurve, Over};
+pub use evidence::Gates;
 pub use finding::{Finding, Quantity};
+pub use forward::Round;
 pub use hypothesis::{Built, Hypothesis, Knob};
 pub use inquiry::{Author, Inquiry};
 pub use scan::Score;
-pub use search::{Diagnosis, Gates, Round, Verdict, diagnose};
+pub use search::diagnose;
 pub use thresholds::{TABLE, Threshold, Thresholds};
 pub use trial::{Rejection, Trial};
 pub use unknown::{

@@ -12,6 +12,8 @@
 //! events         reactions that fire at its end                                         plant/events.rs
 //! leg            a step that was taken, for those who follow                            plant/leg.rs
 //! outputs        what measured channels show, and its derivatives by the states         plant/outputs.rs
+//! lengths        how long steps are                                                     plant/lengths.rs
+//! unsupported    why a program has no such form                                         plant/unsupported.rs
 //! snapshot       a plant at a row, to come back to                                      plant/snapshot.rs
 //! ```
 
@@ -21,20 +23,23 @@ mod events;
 mod gains;
 mod inputs;
 mod leg;
+mod lengths;
 mod model;
 mod outputs;
 mod past;
 mod secants;
 mod snapshot;
 mod stepping;
+mod unsupported;
 
 pub(crate) use configuration::{
     Configuration, Places, arranged, inverse, partials, uneven, v_column, x_column,
 };
-pub use driven::Unsupported;
-pub(crate) use driven::{LEVELS, Plant, shortest_steps, size_of};
+pub(crate) use driven::Plant;
 pub(crate) use gains::Gains;
 pub(crate) use leg::{Instant, Leg, length};
+pub(crate) use lengths::{LEVELS, shortest_steps, size_of};
 pub(crate) use outputs::{measured, output_matrix};
 pub(crate) use past::past_differs;
 pub(crate) use snapshot::Snapshot;
+pub use unsupported::Unsupported;

@@ -8,8 +8,9 @@ mod vary;
 pub use joint::{JointCalibration, JointPart, joint_calibration};
 pub use numbers::{Local, Number};
 
+use crate::aim::Aim;
 use crate::asked::Asked;
-use crate::project::{Aim, Loaded, Project};
+use crate::project::{Loaded, Project};
 use crate::refusals::calibrations as refused;
 use crate::refused::{Fault, Refused};
 use hyde_calibrate::{CalibrationPlan, Observer, Recording, Varied};

@@ -1,8 +1,10 @@
 //! A full check: every experiment of a file compiled with what its budget asks for, or its last model, and its calibrations
 //! and diagnoses read. Sweeps are not planned.
 
+use crate::aim::Aim;
 use crate::asked::Asked;
-use crate::project::{Aim, Loaded, Project, Records};
+use crate::project::{Loaded, Project};
+use crate::records::Records;
 use crate::refused::Fault;
 use hyde_calibrate::CalibrationPlan;
 use hyde_compiler::{Compiled, DiagnosisPlan, ideals};

@@ -1,9 +1,9 @@
 //! The FMUs that a file names: `model Controller = fmu("controller.fmu");`. Each becomes a model of its own source file.
 
+use crate::aim::Aim;
 use crate::asked::Asked;
 use crate::inputs::Kind;
 use crate::package::Roots;
-use crate::project::Aim;
 use crate::refusals::files as refused;
 use hyde_compiler::{File, FmuInterface, fmu_has_no_equations};
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! world             where files are: the disk, memory, unsaved buffers  world.rs
+//! aim               what a program is made for                        aim.rs
 //! asked             which model, with what set from outside             asked.rs
 //! inputs            every file a model is made from, as it was read     inputs.rs
 //! package           packages beyond the library, and their manifests    package.rs
@@ -44,6 +45,7 @@
 //! ```
 //! Start reading at [`load`] in `project.rs`.
 
+mod aim;
 mod asked;
 pub mod assumptions;
 pub mod budget;
@@ -88,6 +90,7 @@ pub mod unknown;
 pub mod unobservable;
 pub mod world;
 
+pub use aim::Aim;
 pub use asked::Asked;
 pub use calibration::{
     Calibration, JointCalibration, JointPart, Local, Number, calibration, chosen, joint_calibration,
@@ -97,8 +100,8 @@ pub use fmus::{FmuHost, NamedFmu};
 pub use inputs::{Content, Inputs, Key, Kind};
 pub use package::{MANIFEST, Manifest, Root, Roots, is_inside, links_out};
 pub use progress::Progress;
-pub use project::{Aim, Loaded, Project, Records, files_of, load};
-pub use records::{Record, headers, read as read_records, tables};
+pub use project::{Loaded, Project, files_of, load};
+pub use records::{Record, Records, headers, read as read_records, tables};
 pub use refused::{Fault, Refused};
 pub use store::Store;
 pub use tables::Table;

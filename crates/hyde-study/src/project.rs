@@ -1,10 +1,11 @@
 //! A model on its way to a program: file, experiment, records, settings.
 
+use crate::aim::Aim;
 use crate::asked::Asked;
 use crate::fmus::{self, NamedFmu};
 use crate::inputs::Kind;
 use crate::package::{MANIFEST, Roots};
-use crate::records::{self, Record};
+use crate::records::{self, Record, Records};
 use crate::refused::{Fault, Refused};
 use crate::run_failure;
 use crate::settings::{self, Setting};
@@ -40,15 +41,6 @@ pub struct Project {
     pub settings: Vec<Setting>,
     /// What is wrong so far, and what is only told.
     pub diagnostics: Diagnostics,
-}
-
-/// What becomes of an experiment whose records are not there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Records {
-    /// It cannot be run: an error.
-    Needed,
-    /// Its model is checked alone, with a warning.
-    IfThere,
 }
 
 /// A file that was parsed, with the packages and tables it names.
@@ -237,33 +229,6 @@ pub fn files_of(asked: &Asked) -> Result<Vec<PathBuf>, Refused> {
     }
     let packages = roots.own_packages().into_iter();
     Ok(packages.map(|(_, file)| file).collect())
-}
-
-/// What a program is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Aim {
-    /// A run.
-    Run,
-    /// A run with the energy ledger, and to check everything that is written.
-    Ledger,
-    /// The linearised model, its inputs free, with the energies of its parts.
-    Linearize,
-    /// The same to be looked at only: FMUs are allowed, which have no derivatives.
-    Look,
-    /// What an observer runs: replays made, measured channels alone reported.
-    Observe,
-    /// A run whose free inputs another tool sets, but for those that a stimulus drives.
-    Export,
-}
-
-impl Aim {
-    fn free_inputs(self) -> FreeInputs {
-        match self {
-            Self::Linearize | Self::Look => FreeInputs::All,
-            Self::Export => FreeInputs::Undriven,
-            Self::Run | Self::Ledger | Self::Observe => FreeInputs::None,
-        }
-    }
 }
 
 impl Project {

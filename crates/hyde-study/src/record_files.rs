@@ -2,9 +2,8 @@
 
 use crate::asked::Asked;
 use crate::inputs::Kind;
-use crate::project::Records;
 use crate::record_settings::{self, side_file};
-use crate::records::{Record, missing};
+use crate::records::{Record, Records, missing};
 use crate::refusals::files as refused;
 use crate::world::{World, matching};
 use hyde_diag::Diagnostic;

@@ -2,7 +2,6 @@
 
 use crate::asked::Asked;
 use crate::package::links_out;
-use crate::project::Records;
 use crate::record_files::{self, Files};
 use crate::record_settings::Given;
 use crate::refusals::files as refused;
@@ -12,6 +11,15 @@ use hyde_signal::Table;
 use hyde_syntax::ast::{Experiment, RecordItem};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+/// What becomes of an experiment whose records are not there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Records {
+    /// It cannot be run: an error.
+    Needed,
+    /// Its model is checked alone, with a warning.
+    IfThere,
+}
 
 /// A record that was read.
 #[derive(Debug)]

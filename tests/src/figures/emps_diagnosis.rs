@@ -126,7 +126,8 @@ fn diagnosed(session: &Session) -> Result<Measured, String> {
         Ok(example)
     };
     let edits = found["command_timings"].as_array().into_iter().flatten();
-    let edits = edits.filter_map(|own| own["edit"]["from"].as_str().zip(own["edit"]["to"].as_str()));
+    let edits =
+        edits.filter_map(|own| own["edit"]["from"].as_str().zip(own["edit"]["to"].as_str()));
     let mended = edits.fold(text, |text, (from, to)| text.replace(from, to));
     let example = Example::load(FILE, Some("tracking"))?.record("file", &record);
     let example = example.replaced(&mended, "tracking");

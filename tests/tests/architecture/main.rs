@@ -1,7 +1,8 @@
-//! The house rules that a program can check: edges between crates and [folders](folders), what files open, are called and hold,
-//! [methods](methods) of types, [diagnostics](refusals), and [one table](thresholds) of the numbers that decide a diagnosis.
+//! The house rules that a program can check: edges between crates and [folders](folders), [circles](circles) of files, what files
+//! open, are called and hold, [methods](methods) of types, [diagnostics](refusals), [one table](thresholds) of a diagnosis' numbers.
 #![allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
 
+mod circles;
 mod folders;
 mod methods;
 mod refusals;

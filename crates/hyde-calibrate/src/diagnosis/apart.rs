@@ -12,9 +12,9 @@
 //! that acts on it through an ideal gear.
 
 use super::alike::act_alike;
+use super::evidence::Gates;
 use super::hypothesis::Hypothesis;
 use super::projection::Projection;
-use super::search::Gates;
 use super::stage::{Ground, flat};
 use super::trial::Trial;
 use crate::fit::rows_of_a_block;

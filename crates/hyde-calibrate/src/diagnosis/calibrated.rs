@@ -6,8 +6,8 @@
 //! rest). So parameters, sizes and shapes with their intervals are those of a fit with the observer of the model found; errors
 //! are still told by the declared one's. Where nothing but equations changed the declared gain is as good, and stays.
 
+use super::answer::Diagnosis;
 use super::inquiry::Inquiry;
-use super::search::Diagnosis;
 use super::stage::{Ground, Stage};
 use crate::fit::{MAX_STEPS, Objective, Slopes, Solution, sum_of_squares};
 use crate::observer::Observer;

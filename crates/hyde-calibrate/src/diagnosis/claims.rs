@@ -7,12 +7,13 @@
 //! intervals over all that its records allow of shapes that they do not determine ([`super::undetermined`]): these are the
 //! intervals that are printed.
 
+use super::answer::{Diagnosis, Verdict, verdict};
 use super::calibrated::calibrate_found;
+use super::evidence::{excess, explained};
 use super::finding::{Finding, Quantity};
 use super::hypothesis::Built;
 use super::inquiry::Inquiry;
 use super::prune::without;
-use super::search::{Diagnosis, Verdict, excess, explained, verdict};
 use super::stage::Stage;
 use crate::plant::Unsupported;
 use hyde_program::Program;

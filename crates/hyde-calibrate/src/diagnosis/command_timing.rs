@@ -11,8 +11,8 @@
 //! The least sum of squares decides, the mean of each e_s left out: an integrator begins where nobody knows. The axis
 //! itself tells a controller that is late from a column that was recorded early: it follows what really drove it.
 
+use super::answer::Diagnosis;
 use super::inquiry::Inquiry;
-use super::search::Diagnosis;
 use super::stage::Ground;
 use crate::observer::{Innovations, Track, Vectors, When};
 use crate::plant::Unsupported;

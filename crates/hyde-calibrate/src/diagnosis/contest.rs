@@ -1,9 +1,9 @@
 //! [`Forward::contest`]: hypotheses fitted beside each other, judged, and the one that is taken in.
 
 use super::apart::{Alternative, alternative};
+use super::evidence::Gates;
 use super::forward::Forward;
 use super::scan::Score;
-use super::search::Gates;
 use super::stage::{Ground, Stage};
 use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
 use rayon::prelude::*;

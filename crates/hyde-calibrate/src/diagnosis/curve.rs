@@ -9,11 +9,11 @@
 //! effect is made of. The data are a partial residual (Larsen and McCleary, Technometrics 14, 1972, 781) in the space of innovations,
 //! with all parameters where the diagnosis left them: to first order they do not depend on the formula that was found.
 
+use super::answer::Diagnosis;
 use super::finding::Finding;
 use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
 use super::projection::dot;
-use super::search::Diagnosis;
 use super::stage::{Ground, flat};
 use super::thresholds::Thresholds;
 use super::unknown::{CURVE_PROBE, Felt, Kind, PROBE_SIZES, Site, Variable, probe, strongest};

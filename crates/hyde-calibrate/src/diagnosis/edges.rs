@@ -4,8 +4,8 @@
 //! still does. All rows are weighed alike, so a model that is right leaves a part of what the play explains, at the edges of
 //! its modes. No other effect and no law is made of that part.
 
+use super::evidence::{excess, explained};
 use super::hypothesis::brings_modes;
-use super::search::{excess, explained};
 use super::stage::Stage;
 use super::thresholds::Thresholds;
 

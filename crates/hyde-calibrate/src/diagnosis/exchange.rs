@@ -6,11 +6,11 @@
 //! one, which no fit crosses: effect and rivals are scanned anew where the others are.
 
 use super::contest::Contest;
+use super::evidence::explained;
 use super::forward::{Branch, Forward, Taken};
 use super::projection::Projection;
 use super::prune::without;
 use super::scan::Score;
-use super::search::explained;
 use super::stage::Stage;
 use crate::plant::Unsupported;
 

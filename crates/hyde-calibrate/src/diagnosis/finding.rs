@@ -1,7 +1,6 @@
 //! [`Finding`]: an effect that was taken in, its sizes and shapes with what the records tell of each.
 
 use super::apart::{Alternative, Relation};
-use super::forward::Taken;
 use super::hypothesis::{Hypothesis, Knob};
 use super::stage::Stage;
 use crate::fit::{covariance, inflation};
@@ -44,6 +43,14 @@ pub struct Finding {
     pub round: usize,
     /// Other hypotheses that the records cannot tell from it.
     pub alternatives: Vec<Alternative>,
+}
+
+/// What is known of an effect that was taken in beside its quantities.
+pub(crate) struct Taken {
+    /// The number of the round.
+    pub(crate) round: usize,
+    /// What the records cannot tell from it.
+    pub(crate) alternatives: Vec<Alternative>,
 }
 
 impl Finding {

@@ -8,23 +8,26 @@
 use super::apart::Alternative;
 use super::contest::Contest;
 use super::edges::{left_at_edges, settled};
+use super::evidence::{Gates, explained};
+use super::finding::Taken;
 use super::hypothesis::{Build, Hypothesis};
 use super::pair::pair;
 use super::projection::Projection;
 use super::prune::prune;
 use super::scan::{Scanner, Score};
-use super::search::{Gates, Round, explained};
 use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use crate::observer::Track;
 use crate::plant::Unsupported;
 
-/// An effect that was taken in.
-pub(crate) struct Taken {
-    /// The number of the round.
-    pub(crate) round: usize,
-    /// What the records cannot tell from it.
-    pub(crate) alternatives: Vec<Alternative>,
+/// A round of the search.
+pub struct Round {
+    /// Scores, the best first.
+    pub scores: Vec<Score>,
+    /// What was fitted, the best first.
+    pub trials: Vec<Trial>,
+    /// The gates.
+    pub gates: Gates,
 }
 
 /// How far a branch of the search has come.

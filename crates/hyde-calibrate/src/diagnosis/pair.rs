@@ -7,9 +7,9 @@
 //! fit        the few that promise most, on the model itself, as one effect with the freedoms of both
 //! ```
 
+use super::evidence::Gates;
 use super::projection::{Sums, change, common};
 use super::scan::{Node, Scanner, Score};
-use super::search::Gates;
 use super::stage::Stage;
 use super::trial::{together, unseen};
 use crate::fit::{inflation, inflation_of};

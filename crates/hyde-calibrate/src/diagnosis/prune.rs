@@ -4,8 +4,8 @@
 //! own, everything else is fitted again, and the one that is missed least goes if it is missed by less than its gate
 //! (backward elimination; Draper and Smith, Applied Regression Analysis, 3rd ed. 1998, section 15.2).
 
+use super::evidence::Gates;
 use super::hypothesis::{Build, Built};
-use super::search::Gates;
 use super::stage::{Ground, Stage, below};
 use crate::fit::{MAX_STEPS, Objective, Slopes, Varied, inflation_of};
 use nalgebra::DVector;

@@ -1,9 +1,9 @@
 //! [`Trial`]: a hypothesis fitted together with all parameters, and judged on halves of the records that its fit has not
 //! seen.
 
+use super::evidence::Gates;
 use super::hypothesis::{Build, Built, Hypothesis, Knob, is_on_bound};
 use super::scan::{Node, Score};
-use super::search::Gates;
 use super::stage::{Ground, Stage};
 use super::undetermined;
 use crate::fit::{

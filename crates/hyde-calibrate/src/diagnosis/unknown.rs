@@ -12,6 +12,7 @@
 //! regression     which products, with which constants                          unknown/regression.rs
 //! places         the sites of a stage, and the law that explains most there    unknown/places.rs
 //! fitted         the law on the whole model, as short as it can be             unknown/fitted.rs
+//! found law      what is missing, and the law that was found                   unknown/found_law.rs
 //! ```
 //! The method is that of de Silva, Higdon, Brunton and Kutz (Front. Artif. Intell. 3, 2020, 25) in that the discrepancy of a
 //! model is regressed and not the model itself; here in the space of innovations, parameters projected out. A law that
@@ -20,6 +21,7 @@
 mod factor;
 mod felt;
 mod fitted;
+mod found_law;
 mod latent;
 mod law;
 mod map;
@@ -30,6 +32,7 @@ mod site;
 
 pub use factor::Factor;
 pub(crate) use felt::{Felt, PROBE as CURVE_PROBE};
+pub use found_law::{FoundLaw, Unknown};
 pub use latent::LatentForce;
 pub(crate) use latent::strongest;
 pub use law::{Law, Summand};
@@ -39,55 +42,16 @@ pub use seen::{Scales, Seen};
 pub use site::{Kind, LawVariable, Site, Written};
 pub(crate) use site::{PROBE as PROBE_SIZES, probe};
 
+use super::answer::{Diagnosis, Verdict};
 use super::edges::settled;
+use super::evidence::{Gates, explained};
 use super::finding::Finding;
+use super::forward::Round;
 use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
-use super::search::{Diagnosis, Gates, Round, Verdict, explained};
 use super::stage::{Stage, below};
 use super::trial::Trial;
 use crate::plant::Unsupported;
-
-/// What is missing where no effect known is it.
-pub struct Unknown {
-    /// The map of the site that explains most, with bands: the signature.
-    pub map: Map,
-    /// Maps of the other sites, without bands, the best first.
-    pub others: Vec<Map>,
-    /// The force that the balance at the site would need, record by record.
-    pub latent: Vec<LatentForce>,
-    /// The law that was found; `None` where no formula is worth its constants.
-    pub found: Option<FoundLaw>,
-}
-
-/// A law that was found.
-pub struct FoundLaw {
-    /// The law as it was selected, with what the records show of its site.
-    pub law: Law,
-    /// The effect written: its text has the values found.
-    pub written: Written,
-    /// What a report needs of it: it is the hypothesis behind the last one of the diagnosis.
-    pub hypothesis: Hypothesis,
-    /// What it gained after each term, before it was fitted.
-    pub gains: Vec<f64>,
-    /// What it gained fitted, and on halves of the records that fits had not seen.
-    pub gain: f64,
-    /// See [`FoundLaw::gain`].
-    pub fold_gain: f64,
-    /// What it gains of what the best panel or wave of the map does.
-    pub share: f64,
-    /// Other forms of the first term with the part of its gain that they have.
-    pub equivalents: Vec<(Summand, f64)>,
-}
-
-impl FoundLaw {
-    /// Its text with other values found.
-    pub(super) fn rewrite(&mut self, finding: &Finding) {
-        let quantities = finding.sizes.iter().chain(&finding.shapes);
-        let values: Vec<f64> = quantities.map(|quantity| quantity.value).collect();
-        self.written = self.law.with(&values).written(&self.written.name, true).0;
-    }
-}
 
 /// Asks what is missing where innovations are not explained, and puts the answer into the diagnosis. `places` are those of
 /// the declared model, if they are known.

@@ -9,43 +9,24 @@
 use super::configuration::{Configuration, Places};
 use super::events::watched;
 use super::leg::{Event, Instant, Leg};
+use super::lengths::{LEVELS, shortest_steps, size_of};
 use super::outputs::output_matrix;
 use super::past::Past;
 use super::stepping::{Outcome, Room, gather};
+use super::unsupported::Unsupported;
 use crate::records::Recording;
 use hyde_program::{Function, Point, Program, Workspace};
 use hyde_sim::{Failure, PointModes, PointTime, Setup};
 use nalgebra::DMatrix;
 
-/// Steps of a row's time: the longest is its half, the shortest a 64th of that.
+/// The level of the longest step: half of a row's time.
 const LONGEST: usize = 1;
-pub(crate) const LEVELS: usize = 8;
 /// A step as short as this, and still too long, asks for another linear part; so many there are of a combination of modes.
 const SHORT: usize = 3;
 const LINEAR_PARTS: usize = 8;
 
 /// How exact a step is before an observer says what is worth it, SI.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
-
-/// Why a program has no fixed-step form.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unsupported {
-    /// A clocked part drives the axis and is not replayed: its name.
-    Clock(String),
-    /// What is delayed depends on states.
-    Delay,
-    /// States are chosen while running.
-    ChosenStates,
-    /// The start has no consistent values.
-    Start(String),
-}
-
-impl Unsupported {
-    /// The equations do not say what the model does.
-    pub(crate) fn singular() -> Self {
-        Self::Start("the equations are singular".to_owned())
-    }
-}
 
 /// A program with its parameters and a record, at an instant.
 pub(crate) struct Plant<'a> {
@@ -485,14 +466,4 @@ fn supported(program: &Program) -> Result<(), Unsupported> {
         return Err(Unsupported::ChosenStates);
     }
     Ok(())
-}
-
-/// Shortest steps in a row's time.
-pub(crate) fn shortest_steps() -> usize {
-    1 << (LEVELS - 1)
-}
-
-/// Shortest steps in a step of a level.
-pub(crate) fn size_of(level: usize) -> usize {
-    1 << (LEVELS - 1 - level)
 }

@@ -1,6 +1,7 @@
 //! What drives a plant: the columns of its record and what is delayed, at the ends of a step and within it.
 
-use super::driven::{Plant, shortest_steps, size_of};
+use super::driven::Plant;
+use super::lengths::{shortest_steps, size_of};
 use crate::records::Recording;
 use hyde_program::Program;
 

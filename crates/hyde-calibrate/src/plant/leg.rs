@@ -1,6 +1,6 @@
 //! [`Leg`]: a step that was taken, and the event at its end: what tangents follow within a row.
 
-use super::driven::size_of;
+use super::lengths::size_of;
 use hyde_program::Point;
 
 /// A step that was taken.

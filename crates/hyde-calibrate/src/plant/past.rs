@@ -9,8 +9,9 @@
 //! ```
 //! What depends on states is not known beforehand: a model that delays such a thing is refused.
 
-use super::driven::{Unsupported, shortest_steps};
 use super::inputs::interpolate;
+use super::lengths::shortest_steps;
+use super::unsupported::Unsupported;
 use crate::records::Recording;
 use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
 

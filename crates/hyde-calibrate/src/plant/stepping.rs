@@ -7,7 +7,8 @@
 //! another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
 
 use super::configuration::{Configuration, Places};
-use super::driven::{LEVELS, Plant, shortest_steps, size_of};
+use super::driven::Plant;
+use super::lengths::{LEVELS, shortest_steps, size_of};
 use super::model::{Model, Solving};
 use crate::linear::{phi1, set_product};
 use hyde_program::{Function, Program, Workspace};

@@ -3,14 +3,14 @@
 //! The linear answer that selects terms is that of a small effect. Once it is fitted, another first term may be the better
 //! one ([`Fitting::with_best_first`]), and further terms may stand for what parameters do then ([`Fitting::shortest`]).
 
-use super::FoundLaw;
 use super::felt::Felt;
+use super::found_law::FoundLaw;
 use super::law::Summand;
 use super::regression::{Selected, select};
+use crate::diagnosis::evidence::{Gates, explained};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::{Projection, change, dot};
 use crate::diagnosis::scan::{Node, Score, VISIBLE};
-use crate::diagnosis::search::{Gates, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::{Trial, trial, unseen};
 

@@ -2,14 +2,14 @@
 
 use super::felt::Felt;
 use super::fitted::{Fitting, Wanted};
+use super::found_law::{FoundLaw, Unknown};
 use super::latent;
 use super::map::{self, Map};
 use super::regression::Selected;
 use super::site::Site;
-use super::{FoundLaw, Unknown};
+use crate::diagnosis::evidence::{Gates, excess, explained};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::Projection;
-use crate::diagnosis::search::{Gates, excess, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::Trial;
 use crate::fit::Solution;
