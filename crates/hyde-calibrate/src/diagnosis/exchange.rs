@@ -7,7 +7,8 @@
 
 use super::contest::Contest;
 use super::evidence::explained;
-use super::forward::{Branch, Forward, Taken};
+use super::finding::Taken;
+use super::forward::{Branch, Forward};
 use super::projection::Projection;
 use super::prune::without;
 use super::scan::Score;

@@ -5,7 +5,6 @@
 //! something left, that of the runner-up is followed too ([`Forward::followed`]): a beam of two, which costs nothing
 //! where the first one explains all there is.
 
-use super::apart::Alternative;
 use super::contest::Contest;
 use super::edges::{left_at_edges, settled};
 use super::evidence::{Gates, explained};

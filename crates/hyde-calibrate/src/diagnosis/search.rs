@@ -10,19 +10,14 @@ use super::evidence::{Gates, excess, explained};
 use super::finding::findings;
 use super::forward::{Branch, Forward};
 use super::holding::holding;
-use super::hypothesis::{Built, Hypothesis};
+use super::hypothesis::Built;
 use super::inquiry::Inquiry;
-use super::scan::Score;
 use super::stage::{Ground, Stage};
-use super::thresholds::Thresholds;
-use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
-use crate::fit::{Solution, Varied, inflation};
-use crate::observer::{Innovations, Observer};
+use crate::observer::Innovations;
 use crate::plant::Unsupported;
-use crate::records::{Frozen, frozen};
-use hyde_signal::statistics::{autocorrelation, distributions};
+use crate::records::frozen;
 
 /// Finds what a model lacks.
 ///

@@ -45,7 +45,6 @@ pub(crate) use site::{PROBE as PROBE_SIZES, probe};
 use super::answer::{Diagnosis, Verdict};
 use super::edges::settled;
 use super::evidence::{Gates, explained};
-use super::finding::Finding;
 use super::forward::Round;
 use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
