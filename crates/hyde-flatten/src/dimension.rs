@@ -6,7 +6,7 @@
 //! What nothing determines is a pure number (U2).
 
 use crate::instance::InstanceId;
-use crate::refusals::dimensions as refused;
+use crate::refusals::dimensions::{self as refused, short};
 use crate::turns::{self, Said};
 use hyde_diag::{Diagnostic, InstancePath, Span};
 use hyde_ir::ExprId;
@@ -276,15 +276,6 @@ impl Dimensions {
     }
 }
 
-/// A dimension as said of a place.
-pub(crate) fn named(dimension: Dimension) -> String {
-    if dimension.is_dimensionless() {
-        short(dimension)
-    } else {
-        dimension.to_string()
-    }
-}
-
 /// `310` with its unit.
 fn with_unit(number: &str, unit: &str) -> String {
     let single = number
@@ -294,16 +285,6 @@ fn with_unit(number: &str, unit: &str) -> String {
         format!("give the number a unit: `{number} [{unit}]`")
     } else {
         format!("give its numbers a unit: `… [{unit}]`")
-    }
-}
-
-/// A dimension in one word: its usual unit.
-pub(crate) fn short(dimension: Dimension) -> String {
-    let unit = dimension.usual_unit();
-    if unit.is_empty() || unit == "1" {
-        "a pure number".to_owned()
-    } else {
-        unit
     }
 }
 

@@ -19,8 +19,8 @@ pub(crate) use record::{record_column, report_units_in_names};
 pub(crate) use replay::{Replay, find_replays, replay_equations, replayed};
 pub(crate) use stimulus::{free_inputs, report_undriven};
 
-use crate::Form;
 use crate::dimension::Dim;
+use crate::input::Form;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::experiment as refused;

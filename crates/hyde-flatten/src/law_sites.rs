@@ -9,8 +9,8 @@
 //! Whoever asks what a model lacks puts laws there: `add a.f = -(law)` on the connector, `wrap grip by grip + law` on the
 //! component. What is declared wrongly is reported for every class that the model has.
 
-use crate::Input;
 use crate::candidates::sites;
+use crate::input::Input;
 use crate::instance::{InstanceId, Member};
 use crate::instantiate::InstanceTree;
 use crate::law_roles::{Refusal, roles, wrong};

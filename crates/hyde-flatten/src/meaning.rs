@@ -1,7 +1,7 @@
 //! [`Meaning`]: what the expressions and parameters of a file are, for an editor: dimension, unit, value, spread, source.
 
-use crate::Input;
 use crate::dimension::Dimensions;
+use crate::input::Input;
 use crate::instance::{ParameterNotes, Typed};
 use crate::model::quantity_of;
 use hyde_diag::{FileId, Span};

@@ -8,8 +8,8 @@ pub(crate) mod structural;
 
 mod agreement;
 
-use crate::Input;
 use crate::dimension::{Dim, Dimensions};
+use crate::input::Input;
 use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
 use crate::instantiate::{InstanceTree, Making};
 use crate::names::Names;
@@ -247,18 +247,4 @@ pub(crate) fn quantity_of(flat: &FlatModel, id: ExprId) -> Option<&Quantity> {
         return Some(&flat.parameters[param].quantity);
     }
     None
-}
-
-/// A few names for a message.
-pub(crate) fn listed(names: &[&str]) -> String {
-    let mut sorted: Vec<&str> = names.to_vec();
-    sorted.sort_unstable();
-    sorted.dedup();
-    let shown: Vec<String> = sorted
-        .iter()
-        .take(8)
-        .map(|name| format!("`{name}`"))
-        .collect();
-    let more = if sorted.len() > 8 { ", …" } else { "" };
-    format!("{}{more}", shown.join(", "))
 }

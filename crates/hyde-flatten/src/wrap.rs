@@ -60,7 +60,7 @@ fn before(model: &mut Model<'_, '_>, value: &Typed, scope: &Scope<'_>) -> VarId 
 
 fn wraps_of(model: &Model<'_, '_>, var: VarId) -> Vec<usize> {
     let instance = model.notes(var).instance;
-    let name = crate::model::bind::short(&model.flat.variables[var].name);
+    let name = crate::words::short(&model.flat.variables[var].name);
     (0..model.wraps.len())
         .filter(|&number| {
             let wrap = &model.wraps[number];

@@ -8,8 +8,8 @@
 use super::lower_equation;
 use crate::instance::{Counter, Scope};
 use crate::model::Model;
-use crate::model::bind::short;
 use crate::refusals::equations as refused;
+use crate::words::short;
 use hyde_diag::{Diagnostics, Span};
 use hyde_ir::flat::Equation;
 use hyde_ir::{Expr as Ir, FlatModel, Range};

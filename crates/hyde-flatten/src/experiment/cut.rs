@@ -10,7 +10,7 @@
 
 use super::bode::{chosen_modes, lower_band, moment};
 use super::stimulus::outer_parameter;
-use crate::FreeInputs;
+use crate::input::FreeInputs;
 use crate::instance::{InstanceId, Scope, Setting};
 use crate::model::Model;
 use crate::model::lower::Resolved;

@@ -10,7 +10,7 @@
 
 use super::measured::recorded;
 use super::stimulus::noise_of_column;
-use crate::Form;
+use crate::input::Form;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::call::clocks_of;

@@ -2,9 +2,9 @@
 
 use super::measured::recorded;
 use super::stepped::is_stepped;
-use crate::FreeInputs;
 use crate::allowed::check_whole;
 use crate::dimension::Dim;
+use crate::input::FreeInputs;
 use crate::instance::{InstanceId, Member, ParameterNotes, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::experiment as refused;
