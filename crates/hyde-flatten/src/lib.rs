@@ -35,6 +35,7 @@ mod model;
 mod modes;
 mod names;
 mod refusals;
+mod shown;
 mod site;
 mod turns;
 mod words;

@@ -8,7 +8,8 @@ pub(crate) mod structural;
 
 mod agreement;
 
-use crate::dimension::{Dim, Dimensions};
+use crate::dimension::Dim;
+use crate::dimension::constraints::Dimensions;
 use crate::input::Input;
 use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
 use crate::instantiate::{InstanceTree, Making};
@@ -16,9 +17,10 @@ use crate::names::Names;
 use crate::refusals::names as refused;
 use crate::turns::{Sides, Turns};
 use crate::zero::Zero;
+use call::Calls;
 use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
 use hyde_ir::{
-    ClockId, ColumnId, Expr, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
+    ClockId, ColumnId, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
 };
 use hyde_syntax::ast::Reference;
 use std::collections::{BTreeMap, BTreeSet};
@@ -68,7 +70,7 @@ pub(crate) struct Model<'a, 'd> {
     /// The values that elements of parameters have now, once they are known.
     pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
     /// The functions whose calls are being replaced, the outermost first, and what is known of calls.
-    pub(crate) calls: crate::model::call::Calls<'a>,
+    pub(crate) calls: Calls<'a>,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
     pub(crate) needs_unrolling: bool,
     pub(crate) diagnostics: &'d mut Diagnostics,
@@ -101,7 +103,7 @@ impl<'a, 'd> Model<'a, 'd> {
             column_values: BTreeMap::new(),
             undeclared: BTreeSet::new(),
             current_values: BTreeMap::new(),
-            calls: crate::model::call::Calls::default(),
+            calls: Calls::default(),
             needs_unrolling: false,
             diagnostics,
         }
@@ -236,15 +238,4 @@ impl<'a, 'd> Model<'a, 'd> {
         let here = part.map_or(whole.span, |part| part.name.span);
         self.report(refused::unknown_name((word, here), &place, whole, &known));
     }
-}
-
-/// What a mere name means and is shown in: that of a variable or a parameter.
-pub(crate) fn quantity_of(flat: &FlatModel, id: ExprId) -> Option<&Quantity> {
-    if let Expr::Var(var, _) = flat.exprs[id] {
-        return Some(&flat.variables[var].quantity);
-    }
-    if let Expr::Param(param, _) = flat.exprs[id] {
-        return Some(&flat.parameters[param].quantity);
-    }
-    None
 }

@@ -1,7 +1,8 @@
 //! Dimensions that must agree: what is asked of the solver, and what is told where two sides cannot be the same.
 
 use super::Model;
-use crate::dimension::{Demand, Dim};
+use crate::dimension::Dim;
+use crate::dimension::constraints::Demand;
 use crate::instance::{InstanceId, Member, ParameterNotes, Typed};
 use crate::instantiate::InstanceTree;
 use crate::words::short;
