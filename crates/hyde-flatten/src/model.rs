@@ -12,7 +12,7 @@ use crate::dimension::Dim;
 use crate::dimension::constraints::Dimensions;
 use crate::input::Input;
 use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
-use crate::instantiate::{InstanceTree, Making};
+use crate::instantiate::{InstanceTree, Making, Wrap};
 use crate::names::Names;
 use crate::refusals::names as refused;
 use crate::turns::{Sides, Turns};
@@ -42,7 +42,7 @@ pub(crate) struct Model<'a, 'd> {
     /// The measures of the top so far, by name.
     pub(crate) measured_numbers: Vec<(&'a str, Typed)>,
     /// What effects wrap.
-    pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
+    pub(crate) wraps: Vec<Wrap<'a>>,
     /// The expressions of the first file as they were lowered, where somebody asks for them.
     pub(crate) lowered: Option<Vec<crate::meaning::Lowered>>,
     /// The sites where a law may act, each with its instance.

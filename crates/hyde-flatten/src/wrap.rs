@@ -6,20 +6,12 @@
 
 use crate::experiment::replayed;
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
+use crate::instantiate::Wrap;
 use crate::model::Model;
 use crate::refusals::effects as refused;
 use crate::site;
 use hyde_ir::{Index, Memo, VarId};
 use hyde_syntax::ast::{Element, Expr, ExprKind, Prefix, Reference};
-
-/// `wrap x by e;`
-pub(crate) struct Wrap<'a> {
-    pub(crate) host: InstanceId,
-    pub(crate) site: &'a Reference,
-    pub(crate) value: &'a Expr,
-    pub(crate) effect: InstanceId,
-    pub(crate) used: bool,
-}
 
 /// A value with the effects that wrap its variable, in the order written.
 pub(crate) fn wrapped(

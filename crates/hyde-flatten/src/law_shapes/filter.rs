@@ -1,6 +1,6 @@
 //! The filters of a shape: `tau*der(late) = v - late;`.
 
-use super::Draft;
+use super::draft::{Draft, READ_IN};
 use super::text::text_in_shape;
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;
@@ -44,16 +44,11 @@ pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> R
         let [first, second] = [time_constant, input].map(|value| model.lower(value, &scope));
         let state = draft.names.iter().find(|(known, _)| *known == name);
         if let Some((_, state)) = state {
-            model.agree(
-                state,
-                &second,
-                "the filter and its input are",
-                super::READ_IN,
-            );
+            model.agree(state, &second, "the filter and its input are", READ_IN);
         }
         let time = crate::dimension::Dim::known(Dimension::TIME);
         let time = model.typed(first.id, time, first.span);
-        model.agree(&time, &first, "a time constant is", super::READ_IN);
+        model.agree(&time, &first, "a time constant is", READ_IN);
         let time_constant = text_in_shape(model, draft, time_constant, first.id)?;
         let input = text_in_shape(model, draft, input, second.id)?;
         let state = &mut draft.shape.states[number];

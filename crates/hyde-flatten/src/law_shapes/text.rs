@@ -1,7 +1,7 @@
 //! The text of a shape's expressions: names of inputs left open, other names of the function replaced by their values,
 //! functions named with their package.
 
-use super::Draft;
+use super::draft::Draft;
 use crate::law_roles::{Refusal, wrong};
 use crate::law_sites::full_name;
 use crate::model::Model;
