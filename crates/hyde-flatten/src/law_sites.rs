@@ -295,24 +295,6 @@ pub(crate) fn full_name(input: &Input<'_>, file: FileIndex, class: &Class) -> St
     }
 }
 
-impl LawVariable {
-    /// The dimension of the variable, or of its derivative.
-    #[must_use]
-    pub fn dimension(&self) -> Dimension {
-        match self.derivative {
-            true => self.quantity.dimension.divide(Dimension::TIME),
-            false => self.quantity.dimension,
-        }
-    }
-
-    fn text(&self) -> String {
-        match self.derivative {
-            true => format!("der({})", self.name),
-            false => self.name.clone(),
-        }
-    }
-}
-
 /// Whether a law may be added to what is declared: what an effect may wrap, or what flows at a connector.
 fn may_have_laws(declaration: &Declaration, connector: bool) -> bool {
     declaration.prefixes.iter().any(|prefix| match connector {

@@ -6,7 +6,9 @@ use crate::law_roles::{Refusal, wrong};
 use crate::names::FileIndex;
 use crate::refusals::laws as refused;
 use crate::words::nearest;
-use hyde_ir::{LawAxis, LawRole, LawShape, LawUnit, VarId};
+use hyde_ir::{
+    ExprId, Id as _, LawAxis, LawInput, LawRole, LawShape, LawState, LawText, LawUnit, VarId,
+};
 use hyde_syntax::ast::{Argument, Class, Declarator, Equation, Expr, ExprKind, Name};
 use hyde_units::{Dimension, NamedUnit};
 
@@ -42,6 +44,16 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// The number of the input of that name.
+    pub(super) fn input(&self, name: &str) -> Option<usize> {
+        let named = self.names.iter().filter(|(own, _)| {
+            let mut locals = self.locals.iter();
+            !locals.any(|(local, _)| local == own)
+        });
+        let mut inputs = named.map(|(own, _)| *own);
+        inputs.position(|own| own == name)
+    }
+
     /// The unit of a quantity at a site: that of the variable with its dimension.
     pub(super) fn unit(&self, dimension: Dimension) -> LawUnit {
         let mut axes = self.axes.iter();
@@ -49,6 +61,23 @@ impl<'a> Draft<'a> {
             Some((axis, _)) => LawUnit::Of(*axis),
             None => LawUnit::Own(NamedUnit::usual(dimension)),
         }
+    }
+
+    /// Adds what a filter gives; its equation is read later.
+    pub(super) fn state(&mut self, declarator: &'a Declarator, dimension: Dimension) -> LawInput {
+        let nothing = || LawText {
+            value: ExprId::from_index(0),
+            pieces: Vec::new(),
+            is_sum: false,
+        };
+        self.shape.states.push(LawState {
+            name: declarator.name.text.clone(),
+            doc: declarator.doc.clone().unwrap_or_default(),
+            unit: self.unit(dimension),
+            time_constant: nothing(),
+            input: nothing(),
+        });
+        LawInput::State(self.shape.states.len() - 1)
     }
 
     /// Reads the roles behind `over`.

@@ -5,28 +5,8 @@ use super::text::text_in_shape;
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;
 use crate::refusals::laws as refused;
-use hyde_ir::{ExprId, Id as _, LawInput, LawState, LawText};
-use hyde_syntax::ast::{Binary, Declarator, EquationKind, Expr, ExprKind};
+use hyde_syntax::ast::{Binary, EquationKind, Expr, ExprKind};
 use hyde_units::Dimension;
-
-impl<'a> Draft<'a> {
-    /// Adds what a filter gives; its equation is read later.
-    pub(super) fn state(&mut self, declarator: &'a Declarator, dimension: Dimension) -> LawInput {
-        let nothing = || LawText {
-            value: ExprId::from_index(0),
-            pieces: Vec::new(),
-            is_sum: false,
-        };
-        self.shape.states.push(LawState {
-            name: declarator.name.text.clone(),
-            doc: declarator.doc.clone().unwrap_or_default(),
-            unit: self.unit(dimension),
-            time_constant: nothing(),
-            input: nothing(),
-        });
-        LawInput::State(self.shape.states.len() - 1)
-    }
-}
 
 /// Reads the equations of a shape, one for each of its states.
 pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> Result<(), Refusal> {

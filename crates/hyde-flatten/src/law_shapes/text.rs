@@ -77,18 +77,6 @@ fn open_calls<'a>(model: &Model<'a, '_>, draft: &Draft<'a>, expr: &mut Expr) {
     }
 }
 
-impl Draft<'_> {
-    /// The number of the input of that name.
-    fn input(&self, name: &str) -> Option<usize> {
-        let named = self.names.iter().filter(|(own, _)| {
-            let mut locals = self.locals.iter();
-            !locals.any(|(local, _)| local == own)
-        });
-        let mut inputs = named.map(|(own, _)| *own);
-        inputs.position(|own| own == name)
-    }
-}
-
 /// A name that may have dots in the place of another one.
 fn word_at(text: String, place: &Reference) -> Reference {
     let parts = text.split('.').map(|part| Part {

@@ -15,6 +15,24 @@ pub struct LawVariable {
     pub quantity: Quantity,
 }
 
+impl LawVariable {
+    /// The dimension of the variable, or of its derivative.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        match self.derivative {
+            true => self.quantity.dimension.divide(Dimension::TIME),
+            false => self.quantity.dimension,
+        }
+    }
+
+    pub(super) fn text(&self) -> String {
+        match self.derivative {
+            true => format!("der({})", self.name),
+            false => self.name.clone(),
+        }
+    }
+}
+
 /// A site of a model where a law may act.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawSite {
