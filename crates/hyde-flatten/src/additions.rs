@@ -1,6 +1,6 @@
 //! [`Additions`]: effects put on a model from outside its text, as `with E on site` would put them there.
 
-use crate::Candidate;
+use crate::candidates::Candidate;
 use hyde_diag::{FileId, Span};
 use hyde_syntax::ast::{Name, Part, Reference};
 

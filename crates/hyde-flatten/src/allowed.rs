@@ -4,8 +4,8 @@
 
 use crate::instance::{Binding, Setting, Typed};
 use crate::model::Model;
-use crate::model::bind::short;
 use crate::refusals::allowed as refused;
+use crate::words::short;
 use hyde_ir::flat::Assert;
 use hyde_ir::{
     BinaryOp, Expr as Ir, ExprId, Id as _, Index, ParamId, UnaryOp, VarId, VariableKind,

@@ -4,34 +4,23 @@
 //! model (outside, flow out of it). `connect(a, b, c)` joins; of each set all potentials are equal, and the flows of the
 //! inside ones minus those of the outside ones sum to zero. A connector in no set has zero flow (U4).
 
+mod connection;
+
+pub(crate) use connection::Connection;
+
 use crate::equation::can_unroll;
 use crate::instance::{Elementwise, InstanceId, Member, Position, Scope, Setting, Typed};
 use crate::instantiate::InstanceTree;
 use crate::model::Model;
 use crate::model::lower::Resolved;
 use crate::refusals::connect as refused;
+use connection::Side;
 use hyde_diag::{MadeBy, Origin, Span};
 use hyde_ir::flat::{Equation, Flow};
 use hyde_ir::{Expr as Ir, FlatModel, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
-
-/// A connector and whether it is seen from outside its component: an inside one of the set.
-type Side = (InstanceId, bool);
-
-/// A `connect` of connectors, as written.
-pub(crate) struct Connection {
-    sides: Vec<Side>,
-    origin: Origin,
-}
-
-impl Connection {
-    /// A connection that the compiler makes.
-    pub(crate) fn joining(sides: Vec<Side>, origin: Origin) -> Self {
-        Self { sides, origin }
-    }
-}
 
 /// Lowers `connect(a, b, …)`; whole arrays are connected element by element.
 pub(crate) fn connection<'a>(

@@ -7,11 +7,13 @@ mod late;
 mod measure;
 mod measured;
 mod observed;
+mod outer;
 mod record;
 mod replay;
 mod response;
 mod stepped;
 mod stimulus;
+mod time;
 mod wrapped;
 
 pub(crate) use measure::add_measure;
@@ -19,8 +21,7 @@ pub(crate) use record::{record_column, report_units_in_names};
 pub(crate) use replay::{Replay, find_replays, replay_equations, replayed};
 pub(crate) use stimulus::{free_inputs, report_undriven};
 
-use crate::Form;
-use crate::dimension::Dim;
+use crate::input::Form;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::experiment as refused;
@@ -31,12 +32,12 @@ use hyde_diag::{Diagnostics, Span};
 use hyde_ir::FlatModel;
 use hyde_ir::flat::Method;
 use hyde_syntax::ast::{self, ExperimentItem};
-use hyde_units::Dimension;
 use measure::push_measure;
 use measured::measured;
 use replay::{keep_commands, record_replays};
 use response::measured_responses;
 use stimulus::stimulus;
+use time::agree_time;
 
 /// Lowers the experiment asked for; without one, every input must have a value of its own.
 pub(crate) fn experiment(model: &mut Model<'_, '_>, root: InstanceId) {
@@ -215,12 +216,4 @@ fn conserve(flat: &mut FlatModel, diagnostics: &mut Diagnostics, value: &ast::Ex
         return;
     }
     diagnostics.push(refused::conserve_is_no_truth(value.span));
-}
-
-fn agree_time(model: &mut Model<'_, '_>, value: &Typed, what: &'static str, instance: InstanceId) {
-    let time = Typed {
-        dim: Dim::known(Dimension::TIME),
-        ..value.clone()
-    };
-    model.agree(&time, value, what, instance);
 }

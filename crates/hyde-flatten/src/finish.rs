@@ -1,6 +1,7 @@
 //! The end of flatten: dimensions that are still unknown, quantities for printing, parameters in order.
 
-use crate::dimension::{Dim, Dimensions};
+use crate::dimension::Dim;
+use crate::dimension::constraints::Dimensions;
 use crate::instance::{Lowering, ParameterNotes, VariableNotes};
 use crate::refusals::allowed as refused;
 use hyde_diag::{Diagnostic, Diagnostics, Span};

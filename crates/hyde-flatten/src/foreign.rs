@@ -2,11 +2,11 @@
 //!
 //! The interface of an FMU is a model with one clocked part. Its variables are given to and taken from the FMU at each tick.
 
+use crate::input::{Form, Input};
 use crate::instance::{InstanceId, Member};
 use crate::instantiate::InstanceTree;
 use crate::names::FileIndex;
 use crate::refusals::instantiate as refused;
-use crate::{Form, Input};
 use hyde_diag::{Diagnostic, Span};
 use hyde_ir::{FlatModel, VarId, flat::Foreign};
 

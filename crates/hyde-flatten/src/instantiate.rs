@@ -7,10 +7,15 @@
 
 mod assigned;
 mod clocked;
+mod collect;
 mod component;
+mod declarator;
 mod declare;
 mod domain;
 mod effect;
+mod hook;
+mod host;
+mod making;
 mod modification;
 mod offer;
 mod parameter;
@@ -19,51 +24,28 @@ mod tree;
 mod variable;
 
 pub(crate) use domain::domain_named;
-pub(crate) use effect::{Hook, Replacement, host_of, written};
-pub(crate) use offer::Offer;
+pub(crate) use host::{host_of, written};
+pub(crate) use making::{Making, Offer, Wrap};
 pub(crate) use quantity::{quantity, type_unit};
 pub(crate) use tree::InstanceTree;
 
+use crate::foreign;
 use crate::instance::{Instance, InstanceId};
 use crate::model::Model;
 use crate::names::FileIndex;
 use crate::refusals::instantiate as refused;
 use clocked::declare_clocked;
+use collect::{Collected, Walk, collect};
 use declare::declare;
 use domain::declare_domain;
-use effect::{effects_of, hook, hook_additions};
+use effect::effects_of;
+use hook::hook_additions;
 use hyde_diag::{InstancePath, Span};
 use hyde_ir::ClockId;
-use hyde_syntax::ast::{Change, Class, ClassBody, Element, Prefix, Reference};
+use hyde_syntax::ast::{Class, Element};
 use modification::{Modifier, modifiers_of, note_modified, report_unused_modifications};
-use parameter::declare_parameters;
+use parameter::parameters_of;
 use std::collections::BTreeMap;
-
-/// Elements of a class and its bases, each with the modifications of the `extends` clauses on the way.
-struct Collected<'a> {
-    element: &'a Element,
-    file: FileIndex,
-    modifiers: Vec<Modifier<'a>>,
-}
-
-/// What is noted while instances are made.
-#[derive(Default)]
-pub(crate) struct Making<'a> {
-    /// Modifications with whether anything used them.
-    modifications: Vec<(Span, String, bool)>,
-    /// The instance that a modification with one word left was given to, by its number.
-    modified: BTreeMap<usize, InstanceId>,
-    /// Effects to be put on instances, and what they replace.
-    pub(crate) hooks: Vec<Hook<'a>>,
-    pub(crate) replacements: Vec<Replacement<'a>>,
-    /// Whether effects are offered to what they fit on, and those that were.
-    pub(crate) offering: bool,
-    pub(crate) offers: Vec<Offer<'a>>,
-    /// Classes that contain themselves, once reported.
-    endless: Vec<&'a Class>,
-    /// The classes that the instance being made extends, by whatever way.
-    extended: usize,
-}
 
 /// Where an instance stands.
 struct Place {
@@ -73,23 +55,10 @@ struct Place {
     span: Span,
 }
 
-/// How far a walk over a class and its bases has come: the modifications that the `extends` clauses on the way made.
-#[derive(Clone)]
-struct Walk<'a> {
-    id: InstanceId,
-    file: FileIndex,
-    modifiers: Vec<Modifier<'a>>,
-    /// The classes that are extended on the way, the one asked for first.
-    chain: Vec<&'a Class>,
-}
-
 /// A replaceable part may be redeclared as what holds it, a few times over; more has no end.
 const MAX_NESTED: usize = 6;
 /// Parts inside parts at most: nobody builds machines so, and recursion needs stack.
 const MAX_PARTS: usize = 200;
-/// Classes that extend each other in a chain at most, and all that a class extends by whatever way.
-const MAX_BASES: usize = 200;
-const MAX_EXTENDED: usize = 2000;
 
 /// Instantiates the model asked for; `None` if there is none of that name.
 pub(crate) fn instantiate_root(model: &mut Model<'_, '_>) -> Option<InstanceId> {
@@ -205,16 +174,7 @@ fn members<'a>(model: &mut Model<'a, '_>, id: InstanceId, collected: &[Collected
         .iter()
         .flat_map(|item| assigned::at_events(item.element))
         .collect();
-    let is_parameter = |element: &Element| {
-        matches!(element, Element::Declaration(d) if d.prefixes.iter().any(|p| {
-            matches!(p, Prefix::Parameter | Prefix::Constant | Prefix::Size | Prefix::Shape)
-        }))
-    };
-    for item in collected.iter().filter(|item| is_parameter(item.element)) {
-        if let Element::Declaration(declaration) = item.element {
-            declare_parameters(model, id, item, declaration);
-        }
-    }
+    parameters_of(model, id, collected);
     let elements: Vec<&'a Element> = collected.iter().map(|item| item.element).collect();
     for item in collected {
         if let Element::Domain(domain) = item.element {
@@ -230,12 +190,18 @@ fn members<'a>(model: &mut Model<'a, '_>, id: InstanceId, collected: &[Collected
             declare_domain(model, id, domain, method, &elements);
         }
     }
-    for item in collected.iter().filter(|item| !is_parameter(item.element)) {
+    for item in collected.iter().filter(|item| !item.is_parameter()) {
         match item.element {
             Element::Declaration(declaration) => {
                 declare(model, id, item, declaration, &discrete, collected)
             }
-            Element::Clocked(clocked) => declare_clocked(model, id, item, clocked),
+            Element::Clocked(clocked) => {
+                if let Some((part, inside)) = declare_clocked(model, id, item, clocked) {
+                    members(model, part, &inside);
+                    let parts = (id, part);
+                    foreign::note_part(&mut model.flat, model.input, &model.tree, parts, item.file);
+                }
+            }
             Element::Discretize(method) => {
                 domain_named(model, id, &method.domain);
             }
@@ -258,86 +224,6 @@ fn members<'a>(model: &mut Model<'a, '_>, id: InstanceId, collected: &[Collected
         .map(|item| (item.file, item.element))
         .collect();
     model.tree.set_elements(id, elements);
-}
-
-/// The elements of a class, those of its bases first.
-fn collect<'a>(
-    model: &mut Model<'a, '_>,
-    walk: Walk<'a>,
-    class: &'a Class,
-    out: &mut Vec<Collected<'a>>,
-) {
-    if let Some(own) = walk
-        .chain
-        .iter()
-        .position(|&known| std::ptr::eq(known, class))
-    {
-        let names: Vec<String> = walk.chain[own..]
-            .iter()
-            .chain([&class])
-            .map(|class| format!("`{}`", class.name.text))
-            .collect();
-        model.report(refused::extends_itself(&class.name, &names));
-        return;
-    }
-    model.making.extended += 1;
-    if walk.chain.len() > MAX_BASES || model.making.extended > MAX_EXTENDED {
-        // Told once: what is beyond it is left out.
-        if model.making.extended <= MAX_EXTENDED + 1 {
-            model.making.extended = MAX_EXTENDED + 1;
-            let name = &model.tree[walk.id].class.name;
-            let limits = (MAX_BASES, MAX_EXTENDED);
-            let diagnostic = refused::extends_too_much(name, limits);
-            model.report(diagnostic);
-        }
-        return;
-    }
-    match &class.body {
-        ClassBody::Short {
-            base,
-            changes,
-            effects,
-            fmu: _,
-        } => {
-            hook(model, walk.id, walk.file, effects);
-            collect_base(model, walk, class, base, changes, out);
-        }
-        ClassBody::Long { elements, .. } => {
-            for element in elements {
-                if let Element::Extends(base, changes) = element {
-                    collect_base(model, walk.clone(), class, base, changes, out);
-                } else {
-                    out.push(Collected {
-                        element,
-                        file: walk.file,
-                        modifiers: walk.modifiers.clone(),
-                    });
-                }
-            }
-        }
-    }
-}
-
-fn collect_base<'a>(
-    model: &mut Model<'a, '_>,
-    mut walk: Walk<'a>,
-    around: &'a Class,
-    base: &'a Reference,
-    changes: &'a [Change],
-    out: &mut Vec<Collected<'a>>,
-) {
-    modifiers_of(model, changes, walk.id, &mut walk.modifiers);
-    match model.names.class(walk.file, base) {
-        Some((file, class)) => {
-            walk.file = file;
-            walk.chain.push(around);
-            collect(model, walk, class, out);
-        }
-        None => {
-            let diagnostic = model.names.unknown(walk.file, base);
-            model.report(diagnostic);
-        }
-    }
 }
 
 /// How many instances are around an instance, itself counted.

@@ -1,7 +1,7 @@
 //! The roles of the variables after `over` of a site: they say what a law of the site is.
 
-use crate::names::nearest;
 use crate::refusals::laws as refused;
+use crate::words::nearest;
 use hyde_diag::Diagnostic;
 use hyde_syntax::LawForm;
 use hyde_syntax::ast::{Argument, Declarator, Expr};

@@ -12,56 +12,33 @@
 //! function.
 
 mod attributes;
+mod draft;
 mod filter;
 mod text;
 
 use crate::dimension::Dim;
-use crate::effect_words::MARKS;
-use crate::instance::{Elementwise, InstanceId, Position, Scope, Setting, Typed};
+use crate::instance::{Elementwise, Position, Typed};
 use crate::instantiate::quantity;
 use crate::law_roles::{Refusal, wrong};
 use crate::law_sites::full_name;
 use crate::model::Model;
-use crate::names::{FileIndex, TypeName, nearest};
+use crate::names::{FileIndex, TypeName};
 use crate::refusals::laws as refused;
 use attributes::{attributes_of_output, constant_of_shape};
+use draft::{Draft, Mark, READ_IN, every_role};
 use filter::filters;
 use hyde_diag::{FileId, MadeBy, Span};
 use hyde_ir::{
-    Expr as Ir, ExprArena, ExprId, FlatModel, Id as _, Index, LawAxis, LawConstant, LawInput,
-    LawRole, LawShape, LawUnit, VarId, VariableKind,
+    Expr as Ir, ExprArena, ExprId, FlatModel, Id as _, Index, LawConstant, LawInput, LawShape,
+    VarId, VariableKind,
 };
 use hyde_syntax::ast::{
-    Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation, Expr,
-    ExprKind, File, Item, Name, Prefix,
+    Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation, Expr, File, Item,
+    Prefix,
 };
-use hyde_units::{Dimension, NamedUnit};
+use hyde_units::Dimension;
 use std::sync::Arc;
 use text::text_in_shape;
-
-/// The instance in which shapes are read: the model; they see nothing of it.
-const READ_IN: InstanceId = 0;
-
-/// A shape while it is read.
-struct Draft<'a> {
-    file: FileIndex,
-    class: &'a Class,
-    shape: LawShape,
-    /// The variables that stand for its inputs.
-    variables: Vec<VarId>,
-    /// What its names stand for.
-    names: Vec<(&'a str, Typed)>,
-    /// The values of names that are not inputs.
-    locals: Vec<(&'a str, &'a Expr)>,
-    /// The dimension of each variable of a site.
-    axes: Vec<(LawAxis, Dimension)>,
-    /// Its constants as they are declared.
-    declared: Vec<&'a Declarator>,
-    equations: Vec<&'a Equation>,
-}
-
-/// A mark as written: its name and what stands in parentheses.
-type Mark = (Name, Vec<Argument>);
 
 /// The shapes that the files declare; those that are declared wrongly are reported.
 pub(crate) fn law_shapes(model: &mut Model<'_, '_>) -> Vec<LawShape> {
@@ -278,66 +255,6 @@ fn finished<'a>(flat: &FlatModel, draft: Draft<'a>) -> LawShape {
     shape
 }
 
-impl<'a> Draft<'a> {
-    fn scope(&self) -> Scope<'a> {
-        Scope {
-            values: Some(self.names.clone()),
-            ..Scope::new(READ_IN, Setting::Report)
-        }
-    }
-
-    /// The unit of a quantity at a site: that of the variable with its dimension.
-    fn unit(&self, dimension: Dimension) -> LawUnit {
-        let mut axes = self.axes.iter();
-        match axes.find(|(_, own)| *own == dimension) {
-            Some((axis, _)) => LawUnit::Of(*axis),
-            None => LawUnit::Own(NamedUnit::usual(dimension)),
-        }
-    }
-
-    /// Reads the roles behind `over`.
-    fn roles(&mut self, declarator: &Declarator) -> Result<(), Refusal> {
-        for argument in &declarator.over {
-            let word = word(argument).filter(|_| argument.name.is_none());
-            let words = LawRole::ALL.iter().map(|(_, word)| *word);
-            let known = LawRole::ALL.iter();
-            let Some((role, _)) = known.into_iter().find(|(_, own)| Some(*own) == word) else {
-                let near = nearest(word.unwrap_or_default(), words);
-                return Err(wrong(refused::unknown_role_of_shape(
-                    argument.value.span,
-                    near,
-                    &every_role(),
-                )));
-            };
-            self.shape.roles.push(*role);
-        }
-        Ok(())
-    }
-
-    /// The mark that a shape leaves.
-    fn mark(&self, marks: &[Mark]) -> Result<(String, Option<usize>), Refusal> {
-        let [(name, arguments)] = marks else {
-            return Err(wrong(refused::several_signatures(&self.class.name)));
-        };
-        let marks: Vec<&str> = MARKS.iter().map(|(mark, _)| *mark).collect();
-        if !marks.contains(&name.text.as_str()) {
-            return Err(wrong(refused::unknown_signature(name, &marks)));
-        }
-        let Some(argument) = arguments.first() else {
-            return Ok((name.text.clone(), None));
-        };
-        let word = word(argument);
-        let mut constants = self.shape.constants.iter();
-        match constants.position(|constant| Some(constant.name.as_str()) == word) {
-            Some(number) => Ok((name.text.clone(), Some(number))),
-            None => Err(wrong(refused::signature_of_no_constant(
-                &self.class.name,
-                argument.value.span,
-            ))),
-        }
-    }
-}
-
 /// The functions with a signature, in the order of the files.
 fn marked(files: &[(FileId, Arc<File>)]) -> Vec<(FileIndex, &Class, &[Mark])> {
     let mut found = Vec::new();
@@ -380,18 +297,4 @@ fn elements<'a>(
         }
     }
     Ok(found)
-}
-
-/// The word that an argument is.
-fn word(argument: &Argument) -> Option<&str> {
-    if let ExprKind::Reference(name) = &argument.value.kind {
-        name.as_word()
-    } else {
-        None
-    }
-}
-
-fn every_role() -> String {
-    let words = LawRole::ALL.map(|(_, word)| format!("`{word}`"));
-    format!("the roles are {}", words.join(", "))
 }

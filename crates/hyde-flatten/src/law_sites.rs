@@ -1,4 +1,4 @@
-//! [`LawSite`]: the sites of a model that declare of which variables a law of theirs is a function.
+//! [`LawSite`]s: the sites of a model that declare of which variables a law of theirs is a function.
 //!
 //! ```text
 //! flow Force f over (place = s, speed = der(s));                     a force on whatever moves
@@ -9,8 +9,12 @@
 //! Whoever asks what a model lacks puts laws there: `add a.f = -(law)` on the connector, `wrap grip by grip + law` on the
 //! component. What is declared wrongly is reported for every class that the model has.
 
-use crate::Input;
+mod site;
+
+pub use site::{LawSite, LawVariable};
+
 use crate::candidates::sites;
+use crate::input::Input;
 use crate::instance::{InstanceId, Member};
 use crate::instantiate::InstanceTree;
 use crate::law_roles::{Refusal, roles, wrong};
@@ -19,44 +23,14 @@ use crate::names::{FileIndex, Names};
 use crate::refusals::laws as refused;
 use crate::site::declared_with;
 use hyde_diag::Span;
-use hyde_ir::{FlatModel, Quantity, VarId};
+use hyde_ir::{FlatModel, VarId};
+use hyde_syntax::LawTarget;
 use hyde_syntax::ast::{
     Class, ClassBody, ClassKind, Declaration, Declarator, Element, Expr, ExprKind, Prefix,
     Reference,
 };
-use hyde_syntax::{LawForm, LawTarget};
 use hyde_units::{Agreement, Dimension};
 use std::collections::BTreeSet;
-
-/// A variable of which a law is a function, or its derivative.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LawVariable {
-    /// Its name as the host has it: `a.s`.
-    pub name: String,
-    /// Whether it is the derivative of that variable.
-    pub derivative: bool,
-    /// Of the variable that is named: its dimension, and the unit it is declared in.
-    pub quantity: Quantity,
-}
-
-/// A site of a model where a law may act.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LawSite {
-    /// Path of the instance.
-    pub path: String,
-    /// Other connectors that are the same site.
-    pub aliases: Vec<String>,
-    /// The class that declares the site, as the model's file may name it: `Translational.Guide`.
-    pub host: String,
-    /// What a law is added to.
-    pub target: LawTarget,
-    /// The dimension of a law.
-    pub dimension: Dimension,
-    /// What a law is.
-    pub form: LawForm,
-    /// Place and speed, or what stands for them.
-    pub over: [LawVariable; 2],
-}
 
 /// What an effect may wrap.
 const WRAPPED: [Prefix; 3] = [Prefix::Site, Prefix::Input, Prefix::Output];
@@ -318,24 +292,6 @@ pub(crate) fn full_name(input: &Input<'_>, file: FileIndex, class: &Class) -> St
     match package {
         Some((package, _)) => format!("{}.{}", package.dotted(), class.name.text),
         None => class.name.text.clone(),
-    }
-}
-
-impl LawVariable {
-    /// The dimension of the variable, or of its derivative.
-    #[must_use]
-    pub fn dimension(&self) -> Dimension {
-        match self.derivative {
-            true => self.quantity.dimension.divide(Dimension::TIME),
-            false => self.quantity.dimension,
-        }
-    }
-
-    fn text(&self) -> String {
-        match self.derivative {
-            true => format!("der({})", self.name),
-            false => self.name.clone(),
-        }
     }
 }
 

@@ -8,8 +8,8 @@
 //!
 //! It is made only where it is asked for; the equations do not change.
 
-use crate::Input;
 use crate::dimension::Dim;
+use crate::input::Input;
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::instantiate::InstanceTree;
 use crate::model::Model;

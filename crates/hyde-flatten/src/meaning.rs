@@ -1,9 +1,9 @@
 //! [`Meaning`]: what the expressions and parameters of a file are, for an editor: dimension, unit, value, spread, source.
 
-use crate::Input;
-use crate::dimension::Dimensions;
+use crate::dimension::constraints::Dimensions;
+use crate::input::Input;
 use crate::instance::{ParameterNotes, Typed};
-use crate::model::quantity_of;
+use crate::shown::quantity_of;
 use hyde_diag::{FileId, Span};
 use hyde_ir::{Expr as Ir, ExprId, FlatModel, Id as _, ParamId, Prior, Quantity};
 use std::collections::BTreeMap;

@@ -8,17 +8,19 @@ pub(crate) mod structural;
 
 mod agreement;
 
-use crate::Input;
-use crate::dimension::{Dim, Dimensions};
+use crate::dimension::Dim;
+use crate::dimension::constraints::Dimensions;
+use crate::input::Input;
 use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
-use crate::instantiate::{InstanceTree, Making};
+use crate::instantiate::{InstanceTree, Making, Wrap};
 use crate::names::Names;
 use crate::refusals::names as refused;
 use crate::turns::{Sides, Turns};
 use crate::zero::Zero;
+use call::Calls;
 use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
 use hyde_ir::{
-    ClockId, ColumnId, Expr, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
+    ClockId, ColumnId, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
 };
 use hyde_syntax::ast::Reference;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,7 +42,7 @@ pub(crate) struct Model<'a, 'd> {
     /// The measures of the top so far, by name.
     pub(crate) measured_numbers: Vec<(&'a str, Typed)>,
     /// What effects wrap.
-    pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
+    pub(crate) wraps: Vec<Wrap<'a>>,
     /// The expressions of the first file as they were lowered, where somebody asks for them.
     pub(crate) lowered: Option<Vec<crate::meaning::Lowered>>,
     /// The sites where a law may act, each with its instance.
@@ -68,7 +70,7 @@ pub(crate) struct Model<'a, 'd> {
     /// The values that elements of parameters have now, once they are known.
     pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
     /// The functions whose calls are being replaced, the outermost first, and what is known of calls.
-    pub(crate) calls: crate::model::call::Calls<'a>,
+    pub(crate) calls: Calls<'a>,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
     pub(crate) needs_unrolling: bool,
     pub(crate) diagnostics: &'d mut Diagnostics,
@@ -101,7 +103,7 @@ impl<'a, 'd> Model<'a, 'd> {
             column_values: BTreeMap::new(),
             undeclared: BTreeSet::new(),
             current_values: BTreeMap::new(),
-            calls: crate::model::call::Calls::default(),
+            calls: Calls::default(),
             needs_unrolling: false,
             diagnostics,
         }
@@ -236,29 +238,4 @@ impl<'a, 'd> Model<'a, 'd> {
         let here = part.map_or(whole.span, |part| part.name.span);
         self.report(refused::unknown_name((word, here), &place, whole, &known));
     }
-}
-
-/// What a mere name means and is shown in: that of a variable or a parameter.
-pub(crate) fn quantity_of(flat: &FlatModel, id: ExprId) -> Option<&Quantity> {
-    if let Expr::Var(var, _) = flat.exprs[id] {
-        return Some(&flat.variables[var].quantity);
-    }
-    if let Expr::Param(param, _) = flat.exprs[id] {
-        return Some(&flat.parameters[param].quantity);
-    }
-    None
-}
-
-/// A few names for a message.
-pub(crate) fn listed(names: &[&str]) -> String {
-    let mut sorted: Vec<&str> = names.to_vec();
-    sorted.sort_unstable();
-    sorted.dedup();
-    let shown: Vec<String> = sorted
-        .iter()
-        .take(8)
-        .map(|name| format!("`{name}`"))
-        .collect();
-    let more = if sorted.len() > 8 { ", …" } else { "" };
-    format!("{}{more}", shown.join(", "))
 }

@@ -1,6 +1,6 @@
 //! What the names of classes and types mean in each file: its own, its imports, and packages by their full name.
 
-use crate::Input;
+use crate::input::Input;
 use crate::refusals::names as refused;
 use hyde_diag::{Diagnostic, FileId, Span};
 pub(crate) use hyde_syntax::FileIndex;
@@ -340,26 +340,6 @@ impl<'a> Names<'a> {
             import.everything && self.lookup().package(&import.path.dotted()) == Some(other)
         })
     }
-}
-
-/// The known name nearest to a misspelt one, if one is near.
-pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let word = name.rsplit('.').next().unwrap_or(name);
-    known
-        .map(|candidate| {
-            (
-                strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase()),
-                candidate.len().abs_diff(word.len()),
-                candidate,
-            )
-        })
-        .filter(|(distance, _, candidate)| {
-            let longer = candidate.len().max(word.len());
-            // With every letter another one, it is another name.
-            *distance <= longer.div_ceil(3) && *distance < longer
-        })
-        .min()
-        .map(|(.., candidate)| candidate)
 }
 
 fn quantity_name(item: &Item) -> Option<&str> {

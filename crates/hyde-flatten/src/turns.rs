@@ -7,8 +7,8 @@
 
 use crate::dimension::Dim;
 use crate::instance::Typed;
-use crate::model::quantity_of;
 use crate::refusals::dimensions as refused;
+use crate::shown::quantity_of;
 use hyde_diag::{Diagnostic, Diagnostics, Sources};
 use hyde_ir::FlatModel;
 use hyde_units::{AngleExponent, Dimension, with_angle_of};

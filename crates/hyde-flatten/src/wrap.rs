@@ -6,20 +6,12 @@
 
 use crate::experiment::replayed;
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
+use crate::instantiate::Wrap;
 use crate::model::Model;
 use crate::refusals::effects as refused;
 use crate::site;
 use hyde_ir::{Index, Memo, VarId};
 use hyde_syntax::ast::{Element, Expr, ExprKind, Prefix, Reference};
-
-/// `wrap x by e;`
-pub(crate) struct Wrap<'a> {
-    pub(crate) host: InstanceId,
-    pub(crate) site: &'a Reference,
-    pub(crate) value: &'a Expr,
-    pub(crate) effect: InstanceId,
-    pub(crate) used: bool,
-}
 
 /// A value with the effects that wrap its variable, in the order written.
 pub(crate) fn wrapped(
@@ -60,7 +52,7 @@ fn before(model: &mut Model<'_, '_>, value: &Typed, scope: &Scope<'_>) -> VarId 
 
 fn wraps_of(model: &Model<'_, '_>, var: VarId) -> Vec<usize> {
     let instance = model.notes(var).instance;
-    let name = crate::model::bind::short(&model.flat.variables[var].name);
+    let name = crate::words::short(&model.flat.variables[var].name);
     (0..model.wraps.len())
         .filter(|&number| {
             let wrap = &model.wraps[number];

@@ -4,8 +4,8 @@
 //! 273.15 too low, and `T + 5 [degC]` adds 278.15 K.
 
 use crate::instance::{Typed, VariableNotes};
-use crate::model::quantity_of;
 use crate::refusals::dimensions as refused;
+use crate::shown::quantity_of;
 use hyde_diag::{Diagnostic, Sources};
 use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
 

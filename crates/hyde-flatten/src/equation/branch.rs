@@ -6,7 +6,7 @@
 //! if s > 0 then x = a; else y = b; end if;     0 = if s > 0 then a - x else b - y
 //! ```
 
-use super::lower_equation;
+use super::kind::lower_equation;
 use crate::instance::Scope;
 use crate::model::Model;
 use crate::refusals::equations as refused;

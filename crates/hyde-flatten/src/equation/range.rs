@@ -5,18 +5,16 @@
 //! for i in 1:2 loop connect(m[i].b, m[i+1].a); end for;       connect(m[1].b, m[2].a); connect(m[2].b, m[3].a);
 //! ```
 
-use super::lower_equation;
+use super::kind::lower_equation;
+use super::unroll::can_unroll;
 use crate::instance::{Counter, Scope};
 use crate::model::Model;
-use crate::model::bind::short;
 use crate::refusals::equations as refused;
-use hyde_diag::{Diagnostics, Span};
+use crate::words::short;
+use hyde_diag::Diagnostics;
 use hyde_ir::flat::Equation;
 use hyde_ir::{Expr as Ir, FlatModel, Range};
 use hyde_syntax::ast::{self, EquationKind, Expr};
-
-/// Loops that cannot stay a range are unrolled up to this many turns.
-const MAX_UNROLLED: usize = 10_000;
 
 pub(super) fn for_equation<'a>(
     model: &mut Model<'a, '_>,
@@ -79,14 +77,6 @@ pub(super) fn for_equation<'a>(
         }
     }
     list
-}
-
-/// Whether so many elements are not too many to have an equation each; reported if they are.
-pub(crate) fn can_unroll(diagnostics: &mut Diagnostics, turns: usize, span: Span) -> bool {
-    if turns > MAX_UNROLLED {
-        diagnostics.push(refused::long_loop(span, turns, MAX_UNROLLED));
-    }
-    turns <= MAX_UNROLLED
 }
 
 /// An array equation whose elements all exist; reported if not.

@@ -1,12 +1,13 @@
 //! Frequency responses.
 
-use super::agree_time;
 use super::stepped::stepped;
+use super::time::agree_time;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
+use crate::model::Model;
 use crate::model::lower::Resolved;
-use crate::model::{Model, quantity_of};
 use crate::refusals::experiment as refused;
+use crate::shown::quantity_of;
 use hyde_diag::{Diagnostics, MadeBy};
 use hyde_ir::flat::{Bode, Moment};
 use hyde_ir::{ExprId, FlatModel, Quantity};

@@ -9,8 +9,8 @@
 //! test signal, which changes with them: so the response of the cut loop is the exact discrete one.
 
 use super::bode::{chosen_modes, lower_band, moment};
-use super::stimulus::outer_parameter;
-use crate::FreeInputs;
+use super::outer::outer_parameter;
+use crate::input::FreeInputs;
 use crate::instance::{InstanceId, Scope, Setting};
 use crate::model::Model;
 use crate::model::lower::Resolved;

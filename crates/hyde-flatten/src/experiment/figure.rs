@@ -1,7 +1,7 @@
 //! Figures that an experiment asks for: `figure lag = r - s, {guide.a.f, screw.F} over time in 0.8 [s] .. 1 [s] "title";`
 
-use super::agree_time;
 use super::bode::shown_quantity;
+use super::time::agree_time;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;

@@ -2,8 +2,8 @@
 
 use super::late::{moved, undelay};
 use super::observed::{observed, period};
-use crate::Form;
 use crate::dimension::Dim;
+use crate::input::Form;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::call::clocks_of;

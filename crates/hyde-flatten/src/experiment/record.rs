@@ -1,7 +1,7 @@
 //! Columns of records: read between rows, held, one row ahead, and their first value and mean; begin and end of a record.
 
-use crate::Input;
 use crate::dimension::Dim;
+use crate::input::Input;
 use crate::instance::{ParameterNotes, Scope, Setting};
 use crate::model::Model;
 use crate::model::lower::Resolved;

@@ -8,9 +8,13 @@
 //! columns were measured with the true axis in the loop, so nothing that stands before a cut has to be known. Effects
 //! that wrap the variable stay: they act on the column.
 
+mod target;
+
+pub(crate) use target::Replay;
+
 use super::measured::recorded;
 use super::stimulus::noise_of_column;
-use crate::Form;
+use crate::input::Form;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::call::clocks_of;
@@ -19,21 +23,10 @@ use crate::refusals::records as refused;
 use hyde_diag::{MadeBy, Origin};
 use hyde_ir::flat::{Equation, Measured, Replayed};
 use hyde_ir::{Expr as Ir, ExprId, FlatModel, Interpolation, Memo, VarId, VariableKind};
-use hyde_syntax::ast::{Drive, ExperimentItem};
+use hyde_syntax::ast::ExperimentItem;
 
 /// A clock ticks several times between two rows if its period is at most this part of their distance.
 const SEVERAL: f64 = 0.6;
-
-/// `replay x = column;` with the variable that it is about.
-#[derive(Clone, Copy)]
-pub(crate) struct Replay<'a> {
-    drive: &'a Drive,
-    var: VarId,
-    root: InstanceId,
-    used: bool,
-    /// What the variable is without its effects: what its column is recorded of.
-    value: Option<ExprId>,
-}
 
 /// Finds the variables that the experiment replays.
 pub(crate) fn find_replays(model: &mut Model<'_, '_>, root: InstanceId) {

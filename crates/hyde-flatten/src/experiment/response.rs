@@ -1,9 +1,9 @@
 //! Measured frequency responses: `measured response(file.i, file.phi) = response(i, motor.phi)`, or the columns of a
 //! record over frequency on the left.
 
-use super::agree_time;
 use super::bode::shown_quantity;
 use super::measured::recorded;
+use super::time::agree_time;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;

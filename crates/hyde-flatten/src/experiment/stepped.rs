@@ -4,7 +4,7 @@
 //! that frequency and of the amplitude `INPUT.amplitude`, in place of its stimulus. It begins gently: over the first half
 //! of the time to settle the amplitude rises from nothing.
 
-use super::stimulus::outer_parameter;
+use super::outer::outer_parameter;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;

@@ -1,20 +1,18 @@
 //! Free inputs: driven by stimuli, made parameters for linearisation, or reported.
 
 use super::measured::recorded;
+use super::outer::outer_parameter;
 use super::stepped::is_stepped;
-use crate::FreeInputs;
 use crate::allowed::check_whole;
-use crate::dimension::Dim;
-use crate::instance::{InstanceId, Member, ParameterNotes, Scope, Setting, Typed};
+use crate::input::FreeInputs;
+use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::experiment as refused;
-use hyde_diag::{MadeBy, Origin};
+use hyde_diag::MadeBy;
 use hyde_ir::flat::{Equation, Preparation};
-use hyde_ir::{
-    Expr as Ir, ExprId, FlatModel, Id as _, Parameter, Quantity, Range, VarId, VariableKind,
-};
+use hyde_ir::{Expr as Ir, ExprId, FlatModel, Id as _, Range, VarId, VariableKind};
 use hyde_syntax::ast::Drive;
-use hyde_units::{Allowed, Kind};
+use hyde_units::Kind;
 
 /// `stimulus r = e`: drives a free input.
 pub(super) fn stimulus<'a>(model: &mut Model<'a, '_>, drive: &'a Drive, root: InstanceId) {
@@ -149,37 +147,6 @@ fn counted_column(model: &mut Model<'_, '_>, value: Typed, kind: Kind, input: &s
         truth: true,
         ..value
     }
-}
-
-/// A parameter that the model does not declare, for what drives it from outside.
-pub(super) fn outer_parameter(
-    model: &mut Model<'_, '_>,
-    name: String,
-    dim: Dim,
-    quantity: Quantity,
-    value: ExprId,
-    origin: &Origin,
-) -> ExprId {
-    model.parameters.push(ParameterNotes::made(dim));
-    let param = model.flat.parameters.push(Parameter {
-        name,
-        len: None,
-        value: vec![value],
-        quantity,
-        allowed: Allowed::default(),
-        structural: false,
-        is_final: false,
-        found: false,
-        derived: false,
-        prior: None,
-        role: hyde_ir::Role::Plain,
-        range: None,
-        source: None,
-        origin: origin.clone(),
-    });
-    model.flat.experiment.free.push(param);
-    let parameter = Ir::Param(param, hyde_ir::Index::SCALAR);
-    model.flat.exprs.add(parameter)
 }
 
 /// Makes free inputs parameters of their names with the value zero: what a linearised model is driven by, or what another

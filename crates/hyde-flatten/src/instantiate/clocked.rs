@@ -1,24 +1,24 @@
 //! Clocked parts: instances whose variables belong to a clock.
 
+use super::collect::Collected;
 use super::modification::modifiers_for;
-use super::{Collected, members};
-use crate::foreign;
 use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
 use crate::refusals::instantiate as refused;
 use hyde_ir::flat;
 use hyde_syntax::ast;
 
+/// Makes the instance of a clocked part, without members yet; gives what is written in it.
 pub(super) fn declare_clocked<'a>(
     model: &mut Model<'a, '_>,
     id: InstanceId,
     item: &Collected<'a>,
     clocked: &'a ast::Clocked,
-) {
+) -> Option<(InstanceId, Vec<Collected<'a>>)> {
     let name = clocked.name.text.as_str();
     if model.clock_of(id).is_some() {
         model.report(refused::clocked_in_clocked(clocked.name.span));
-        return;
+        return None;
     }
     let origin = model.tree.origin(id, clocked.name.span);
     let nothing = model.flat.exprs.constant(0.0);
@@ -52,12 +52,5 @@ pub(super) fn declare_clocked<'a>(
             modifiers: modifiers.clone(),
         })
         .collect();
-    members(model, part, &collected);
-    foreign::note_part(
-        &mut model.flat,
-        model.input,
-        &model.tree,
-        (id, part),
-        item.file,
-    );
+    Some((part, collected))
 }

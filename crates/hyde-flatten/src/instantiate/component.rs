@@ -1,9 +1,10 @@
 //! Components: an instance or an array of them, of the declared or the redeclared model.
 
-use super::declare::length;
+use super::collect::Collected;
+use super::declarator::length;
 use super::effect::replaced;
 use super::modification::{Modifier, modifiers_for, modifiers_of};
-use super::{Collected, Place, instantiate};
+use super::{Place, instantiate};
 use crate::instance::{InstanceId, Member, Position};
 use crate::model::Model;
 use crate::names::{FileIndex, Names};

@@ -1,11 +1,11 @@
 //! A declaration: whether it means variables or components, its names and its length.
 
-use super::Collected;
+use super::collect::Collected;
 use super::component::declare_component;
+use super::declarator::free_name;
 use super::variable::declare_variable;
-use crate::instance::{InstanceId, Member};
+use crate::instance::InstanceId;
 use crate::model::Model;
-use crate::refusals::instantiate as refused;
 use hyde_syntax::ast::{
     self, Declaration, Declarator, Element, EquationKind, Expr, ExprKind, Prefix, Reference,
 };
@@ -70,53 +70,6 @@ pub(super) fn declare<'a>(
                 declare_variable(model, id, item, declaration, declarator, quantity, discrete)
             }
             _ => {}
-        }
-    }
-}
-
-pub(super) fn free_name<'a>(
-    model: &mut Model<'a, '_>,
-    id: InstanceId,
-    declarator: &'a Declarator,
-) -> bool {
-    let name = declarator.name.text.as_str();
-    let Some(member) = model.tree[id].members.get(name) else {
-        return true;
-    };
-    let first = match member {
-        Member::Variable(var) => Some(model.flat.variables[*var].origin.span),
-        Member::Parameter(param) => Some(model.flat.parameters[*param].origin.span),
-        Member::Instance(part) => Some(model.tree[*part].span),
-        Member::Instances(parts) => parts.first().map(|part| model.tree[*part].span),
-        Member::Domain(domain) => Some(model.domains[*domain].span),
-    };
-    model.report(refused::declared_twice(&declarator.name, first));
-    false
-}
-
-/// The length that dimensions after the type or the name give.
-pub(super) fn length<'a>(
-    model: &mut Model<'a, '_>,
-    id: InstanceId,
-    of_type: &'a [Expr],
-    of_name: &'a [Expr],
-) -> Option<usize> {
-    let dims: Vec<&'a Expr> = of_name.iter().chain(of_type).collect();
-    match dims.as_slice() {
-        [] => None,
-        [dim] => {
-            let Some(length) = model.structural_integer(id, dim) else {
-                return Some(0); // Reported; no element is looked for in it.
-            };
-            if !(0..=100_000_000).contains(&length) {
-                model.report(refused::bad_length(length, dim.span));
-                return Some(0);
-            }
-            usize::try_from(length).ok()
-        }
-        [_, second, ..] => {
-            model.report(refused::second_dimension(second.span));
-            None
         }
     }
 }

@@ -8,101 +8,20 @@
 //! An effect is an instance inside its host, `guide.Stribeck`, that sees its host's names after its own. Everything else
 //! of the model stays as it is. At exactly neutral sizes the effect is left out: only its parameters remain.
 
+use super::collect::{Collected, Walk, collect};
+use super::host::{fits_on, instance_of_effect, written};
+use super::making::{Hook, Replacement, Wrap};
 use super::modification::{Modifier, modifiers_for, modifiers_of, note_modified};
-use super::{Collected, Place, Walk, collect, instantiate, members};
+use super::parameter::parameters_of;
+use super::{Place, instantiate, members};
 use crate::connect::Connection;
-use crate::instance::{Instance, InstanceId, Member};
+use crate::instance::{InstanceId, Member};
 use crate::model::Model;
-use crate::names::{FileIndex, Names};
+use crate::names::FileIndex;
 use crate::refusals::effects as refused;
-use crate::wrap::Wrap;
-use hyde_diag::{InstancePath, MadeBy, Span};
+use hyde_diag::MadeBy;
 use hyde_ir::{Expr as Ir, Index};
-use hyde_syntax::ast::{
-    Change, Class, ClassBody, ClassKind, Declaration, Declarator, EffectUse, Element, Prefix,
-    Reference,
-};
-
-/// An effect to be put on an instance once that is made.
-pub(crate) struct Hook<'a> {
-    host: InstancePath,
-    pub(crate) site: &'a Reference,
-    file: FileIndex,
-    class: &'a Class,
-    changes: &'a [Change],
-    /// The model that uses the effect: its changes stand in its scope.
-    pub(crate) scope: InstanceId,
-    /// What its instance is called below its host.
-    name: &'a str,
-    /// Neutral sizes do not leave it out.
-    keep: bool,
-    pub(crate) used: bool,
-}
-
-/// `replace c by M(…);`
-pub(crate) struct Replacement<'a> {
-    pub(crate) host: InstanceId,
-    pub(crate) component: &'a Reference,
-    class: (FileIndex, &'a Class),
-    changes: &'a [Change],
-    effect: InstanceId,
-    pub(crate) used: bool,
-}
-
-/// Notes the effects of a model, to be put on their sites as those are made.
-pub(super) fn hook<'a>(
-    model: &mut Model<'a, '_>,
-    id: InstanceId,
-    file: FileIndex,
-    effects: &'a [EffectUse],
-) {
-    for used in effects {
-        let found = model.names.class(file, &used.effect);
-        let Some((file, class)) = found.filter(|(_, class)| class.kind == ClassKind::Effect) else {
-            let diagnostic = match found {
-                Some((_, class)) => refused::with_no_effect(&class.name.text, used.effect.span),
-                None => model.names.unknown(file, &used.effect),
-            };
-            model.report(diagnostic);
-            continue;
-        };
-        for site in &used.sites {
-            model.making.hooks.push(Hook {
-                host: model.tree.path(id).child(&written(site)),
-                site,
-                file,
-                class,
-                changes: &used.changes,
-                scope: id,
-                name: &class.name.text,
-                keep: false,
-                used: false,
-            });
-        }
-    }
-}
-
-/// Notes the effects that are put on the model from outside its text.
-pub(super) fn hook_additions(model: &mut Model<'_, '_>, root: InstanceId) {
-    for addition in model.input.additions.list() {
-        let Some((file, class)) = model.names.class(0, &addition.effect) else {
-            let diagnostic = model.names.unknown(0, &addition.effect);
-            model.report(diagnostic);
-            continue;
-        };
-        model.making.hooks.push(Hook {
-            host: InstancePath::root().child(&written(&addition.site)),
-            site: &addition.site,
-            file,
-            class,
-            changes: &[],
-            scope: root,
-            name: &addition.name,
-            keep: model.input.additions.keeps_neutral(),
-            used: false,
-        });
-    }
-}
+use hyde_syntax::ast::{Class, ClassKind, Declaration, Declarator, Element, Prefix};
 
 /// Makes the effects of an instance that was just made, before its own members. Its modifications may name them.
 pub(super) fn effects_of<'a>(
@@ -158,8 +77,9 @@ fn effect<'a>(
         chain: Vec::new(),
     };
     collect(model, walk, class, &mut collected);
-    let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
-    members(model, id, &parameters);
+    let (parameters, rest): (Vec<_>, Vec<_>) =
+        collected.into_iter().partition(Collected::is_parameter);
+    parameters_of(model, id, &parameters);
     if !keep && is_neutral(model, id, &parameters) {
         model.tree.set_elements(id, Vec::new());
         model.flat.notes.push(format!(
@@ -245,27 +165,6 @@ fn effect<'a>(
         .set_elements(id, all.map(|item| (item.file, item.element)).collect());
 }
 
-/// An effect inside its host, without members yet.
-pub(super) fn instance_of_effect<'a>(
-    model: &mut Model<'a, '_>,
-    host: InstanceId,
-    (file, class): (FileIndex, &'a Class),
-    name: &str,
-    span: Span,
-) -> InstanceId {
-    model.tree.push(Instance {
-        path: model.tree.path(host).child(name),
-        file,
-        class,
-        parent: Some(host),
-        outer: Some(host),
-        clock: model.clock_of(host),
-        members: std::collections::BTreeMap::new(),
-        elements: Vec::new(),
-        span,
-    })
-}
-
 /// Whether every size of an effect is exactly zero. Sizes that are not stay plain parameters.
 fn is_neutral<'a>(model: &mut Model<'a, '_>, id: InstanceId, parameters: &[Collected<'a>]) -> bool {
     let before: Vec<bool> = model.flat.parameters.iter().map(|p| p.structural).collect();
@@ -330,33 +229,4 @@ pub(super) fn replaced<'a>(
     // The effect's own modifications come before those of the component it replaces.
     modifiers.splice(0..0, own);
     Some(class)
-}
-
-/// The type an effect is for.
-pub(crate) fn host_of(class: &Class) -> Option<&Reference> {
-    match &class.body {
-        ClassBody::Long { host, .. } => host.as_ref(),
-        ClassBody::Short { .. } => None,
-    }
-}
-
-pub(super) fn is_parameter(item: &Collected<'_>) -> bool {
-    matches!(item.element, Element::Declaration(declaration) if declaration.prefixes.iter().any(|prefix| {
-        matches!(prefix, Prefix::Parameter | Prefix::Constant | Prefix::Size | Prefix::Shape)
-    }))
-}
-
-/// A site as written, subscripts included: `joint[2].flange`.
-pub(crate) fn written(site: &Reference) -> String {
-    hyde_syntax::format_reference(site)
-}
-
-/// Whether an instance is of the type that an effect is for, or of one that extends it.
-pub(super) fn fits_on<'a>(
-    names: Names<'a>,
-    host: &Instance<'a>,
-    (file, effect): (FileIndex, &'a Class),
-) -> bool {
-    let wanted = host_of(effect).and_then(|host| names.class(file, host));
-    wanted.is_some_and(|(_, wanted)| names.is_a((host.file, host.class), wanted))
 }

@@ -1,22 +1,11 @@
 //! Offers: every effect on everything it fits on, as far as its parameters. [`crate::candidates`] makes the list of them.
 
-use super::effect::{fits_on, instance_of_effect, is_parameter};
-use super::{Walk, collect, members};
+use super::collect::{Collected, Walk, collect};
+use super::host::{fits_on, instance_of_effect};
+use super::making::Offer;
+use super::parameter::parameters_of;
 use crate::instance::InstanceId;
 use crate::model::Model;
-use hyde_syntax::ast::Element;
-
-/// An effect that fits on a host: there are its parameters alone.
-pub(crate) struct Offer<'a> {
-    pub(crate) host: InstanceId,
-    pub(crate) effect: InstanceId,
-    /// The package of its file; none for the user's own.
-    pub(crate) package: Option<String>,
-    /// What its instance would be called below its host.
-    pub(crate) name: String,
-    /// Everything that is written in it.
-    pub(crate) elements: Vec<&'a Element>,
-}
 
 /// Makes the parameters of every effect that fits on an instance, and nothing else of it: for
 /// [`crate::candidates`].
@@ -45,8 +34,9 @@ pub(super) fn offer(model: &mut Model<'_, '_>, host: InstanceId) {
         };
         collect(model, walk, class, &mut collected);
         let elements = collected.iter().map(|item| item.element).collect();
-        let (parameters, _): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
-        members(model, id, &parameters);
+        let (parameters, _): (Vec<_>, Vec<_>) =
+            collected.into_iter().partition(Collected::is_parameter);
+        parameters_of(model, id, &parameters);
         model.tree.set_elements(id, Vec::new());
         model.making.offers.push(Offer {
             host,

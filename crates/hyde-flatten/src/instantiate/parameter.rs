@@ -1,7 +1,7 @@
 //! Parameters with their priors and sources.
 
-use super::Collected;
-use super::declare::{free_name, length};
+use super::collect::Collected;
+use super::declarator::{free_name, length};
 use super::modification::{attribute, binding, check_attributes, declared_bounds, modifiers_for};
 use super::quantity::{quantities_of, quantity};
 use super::variable::is_true;
@@ -10,10 +10,23 @@ use crate::model::Model;
 use crate::names::TypeName;
 use crate::refusals::instantiate as refused;
 use hyde_ir::{Parameter, Role};
-use hyde_syntax::ast::{self, Declaration, Prefix};
+use hyde_syntax::ast::{self, Declaration, Element, Prefix};
 use hyde_units::{Allowed, NamedUnit};
 
-pub(super) fn declare_parameters<'a>(
+/// Declares the parameters among the elements of an instance.
+pub(super) fn parameters_of<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    collected: &[Collected<'a>],
+) {
+    for item in collected.iter().filter(|item| item.is_parameter()) {
+        if let Element::Declaration(declaration) = item.element {
+            declare_parameters(model, id, item, declaration);
+        }
+    }
+}
+
+fn declare_parameters<'a>(
     model: &mut Model<'a, '_>,
     id: InstanceId,
     item: &Collected<'a>,

@@ -1,7 +1,7 @@
 //! Variables with their kind, length and attributes.
 
-use super::Collected;
-use super::declare::length;
+use super::collect::Collected;
+use super::declarator::length;
 use super::domain::field;
 use super::modification::{attribute, binding, check_attributes, declared_bounds, modifiers_for};
 use super::quantity::quantity;

@@ -1,6 +1,6 @@
 //! What a shape declares of its constants and outputs in parentheses, and the ranges behind `in`.
 
-use super::{Draft, READ_IN};
+use super::draft::{Draft, READ_IN};
 use crate::instance::Typed;
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;

@@ -1,32 +1,12 @@
 //! The filters of a shape: `tau*der(late) = v - late;`.
 
-use super::Draft;
+use super::draft::{Draft, READ_IN};
 use super::text::text_in_shape;
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;
 use crate::refusals::laws as refused;
-use hyde_ir::{ExprId, Id as _, LawInput, LawState, LawText};
-use hyde_syntax::ast::{Binary, Declarator, EquationKind, Expr, ExprKind};
+use hyde_syntax::ast::{Binary, EquationKind, Expr, ExprKind};
 use hyde_units::Dimension;
-
-impl<'a> Draft<'a> {
-    /// Adds what a filter gives; its equation is read later.
-    pub(super) fn state(&mut self, declarator: &'a Declarator, dimension: Dimension) -> LawInput {
-        let nothing = || LawText {
-            value: ExprId::from_index(0),
-            pieces: Vec::new(),
-            is_sum: false,
-        };
-        self.shape.states.push(LawState {
-            name: declarator.name.text.clone(),
-            doc: declarator.doc.clone().unwrap_or_default(),
-            unit: self.unit(dimension),
-            time_constant: nothing(),
-            input: nothing(),
-        });
-        LawInput::State(self.shape.states.len() - 1)
-    }
-}
 
 /// Reads the equations of a shape, one for each of its states.
 pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> Result<(), Refusal> {
@@ -44,16 +24,11 @@ pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> R
         let [first, second] = [time_constant, input].map(|value| model.lower(value, &scope));
         let state = draft.names.iter().find(|(known, _)| *known == name);
         if let Some((_, state)) = state {
-            model.agree(
-                state,
-                &second,
-                "the filter and its input are",
-                super::READ_IN,
-            );
+            model.agree(state, &second, "the filter and its input are", READ_IN);
         }
         let time = crate::dimension::Dim::known(Dimension::TIME);
         let time = model.typed(first.id, time, first.span);
-        model.agree(&time, &first, "a time constant is", super::READ_IN);
+        model.agree(&time, &first, "a time constant is", READ_IN);
         let time_constant = text_in_shape(model, draft, time_constant, first.id)?;
         let input = text_in_shape(model, draft, input, second.id)?;
         let state = &mut draft.shape.states[number];

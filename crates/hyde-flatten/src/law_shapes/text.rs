@@ -1,7 +1,7 @@
 //! The text of a shape's expressions: names of inputs left open, other names of the function replaced by their values,
 //! functions named with their package.
 
-use super::Draft;
+use super::draft::Draft;
 use crate::law_roles::{Refusal, wrong};
 use crate::law_sites::full_name;
 use crate::model::Model;
@@ -74,18 +74,6 @@ fn open_calls<'a>(model: &Model<'a, '_>, draft: &Draft<'a>, expr: &mut Expr) {
     }
     for child in expr.children_mut() {
         open_calls(model, draft, child);
-    }
-}
-
-impl Draft<'_> {
-    /// The number of the input of that name.
-    fn input(&self, name: &str) -> Option<usize> {
-        let named = self.names.iter().filter(|(own, _)| {
-            let mut locals = self.locals.iter();
-            !locals.any(|(local, _)| local == own)
-        });
-        let mut inputs = named.map(|(own, _)| *own);
-        inputs.position(|own| own == name)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Dimensions that must agree: what is asked of the solver, and what is told where two sides cannot be the same.
 
 use super::Model;
-use super::bind::short;
-use crate::dimension::{Demand, Dim};
+use crate::dimension::Dim;
+use crate::dimension::constraints::Demand;
 use crate::instance::{InstanceId, Member, ParameterNotes, Typed};
 use crate::instantiate::InstanceTree;
+use crate::words::short;
 use hyde_diag::{Diagnostic, InstancePath, Severity, Span};
 use hyde_ir::{Expr, ExprId, FlatModel, Id as _, Quantity};
 
@@ -100,7 +101,7 @@ impl Model<'_, '_> {
                 let text = format!(
                     "`{}` is {} here",
                     short(name),
-                    crate::dimension::short(dimension)
+                    crate::refusals::dimensions::short(dimension)
                 );
                 diagnostic.labels.insert(0, hyde_diag::Label { span, text });
             }
@@ -114,7 +115,7 @@ impl Model<'_, '_> {
                 let declared = quantity.unit.text();
                 let unit = match quantity.dimension == dimension && declared != "1" {
                     true => declared.to_owned(),
-                    false => crate::dimension::short(dimension),
+                    false => crate::refusals::dimensions::short(dimension),
                 };
                 Some(format!("`{}` is {unit}", short(name)))
             })

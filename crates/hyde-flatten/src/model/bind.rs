@@ -5,6 +5,7 @@ mod elements;
 use crate::allowed::check_whole;
 use crate::equation::make_traces_of_equations;
 use crate::event_clock::{event_clock, is_event_clock};
+use crate::words::short;
 use crate::wrap::wrapped;
 use crate::zero;
 use elements::Elements;
@@ -412,9 +413,4 @@ impl<'a> Model<'a, '_> {
             }
         }
     }
-}
-
-/// The last part of a dotted name.
-pub(crate) fn short(name: &str) -> &str {
-    name.rsplit('.').next().unwrap_or(name)
 }

@@ -1,5 +1,6 @@
 //! Calls: the functions of the language, each with what it demands of its arguments.
 
+mod calls;
 mod chirp;
 mod clock;
 mod delay;
@@ -12,8 +13,8 @@ mod reduction;
 mod sum;
 mod table;
 
+pub(crate) use calls::Calls;
 pub(crate) use clock::clocks_of;
-pub(crate) use function::Calls;
 
 use crate::dimension::Dim;
 use crate::instance::{Member, Scope, Setting, Typed};

@@ -4,10 +4,11 @@ mod list;
 mod operation;
 mod read;
 mod resolve;
+mod resolved;
 mod shape;
 mod subscript;
 
-pub(crate) use resolve::Resolved;
+pub(crate) use resolved::Resolved;
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};

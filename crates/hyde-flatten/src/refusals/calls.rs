@@ -1,7 +1,6 @@
 //! What is said of calls: of functions, of the words of clocked parts and events, of delays and derivatives, and of tables.
 
-use crate::model::listed;
-use crate::names::nearest;
+use crate::words::{listed, nearest};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Declarator, Name, Reference};
 use hyde_units::significant;

@@ -1,6 +1,6 @@
 //! What is said of `connect`.
 
-use crate::model::listed;
+use crate::words::listed;
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::Reference;
 

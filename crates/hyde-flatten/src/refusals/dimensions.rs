@@ -1,6 +1,5 @@
 //! What is said of dimensions: of sides that disagree, of turns and radians, of zero points of temperatures.
 
-use crate::dimension::{named, short};
 use hyde_diag::{InstancePath, Span, diagnostics};
 use hyde_units::{Dimension, Exponent};
 
@@ -69,5 +68,24 @@ diagnostics! {
     fn zero_point_added(literal: Span, number: &str, unit: &str) = warning ZeroPoint {
         "a temperature with its zero point is added as a difference"; at literal, "adds its zero point as well";
         help "write `{number} [{unit}]` for a difference";
+    }
+}
+
+/// A dimension as said of a place.
+fn named(dimension: Dimension) -> String {
+    if dimension.is_dimensionless() {
+        short(dimension)
+    } else {
+        dimension.to_string()
+    }
+}
+
+/// A dimension in one word: its usual unit.
+pub(crate) fn short(dimension: Dimension) -> String {
+    let unit = dimension.usual_unit();
+    if unit.is_empty() || unit == "1" {
+        "a pure number".to_owned()
+    } else {
+        unit
     }
 }

@@ -1,7 +1,6 @@
 //! What is said of effects: of the words about themselves, of the places they are put on, of what they wrap and replace.
 
-use crate::model::listed;
-use crate::names::nearest;
+use crate::words::{listed, nearest};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Name, Reference};
 

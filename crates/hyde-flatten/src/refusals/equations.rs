@@ -1,6 +1,6 @@
 //! What is said of equations: loops and branches, events, modes, and clocked parts that tick at events.
 
-use crate::model::listed;
+use crate::words::listed;
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Name, Reference};
 

@@ -1,7 +1,6 @@
 //! What is said of experiments: solver, stimuli, figures, budgets, frequency responses and open loops.
 
-use crate::model::bind::short;
-use crate::model::listed;
+use crate::words::{listed, short};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Name, Reference};
 

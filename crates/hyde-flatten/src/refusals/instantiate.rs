@@ -1,7 +1,6 @@
 //! What is said of declarations: components, parameters, variables, arrays, domains, modifications, and FMUs.
 
-use crate::model::listed;
-use crate::names::nearest;
+use crate::words::{listed, nearest};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Name, Reference};
 

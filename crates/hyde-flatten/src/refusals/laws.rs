@@ -1,7 +1,6 @@
 //! What is said of laws: of the sites where one may act, and of the shapes that it may have.
 
-use crate::model::listed;
-use crate::names::nearest;
+use crate::words::{listed, nearest};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::{Name, Reference};
 

@@ -1,7 +1,6 @@
 //! What is said of names that are not known where they are used.
 
-use crate::model::listed;
-use crate::names::nearest;
+use crate::words::{listed, nearest};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::Reference;
 

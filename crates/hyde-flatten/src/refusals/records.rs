@@ -1,7 +1,6 @@
 //! What is said of records: their columns, what is measured, replayed, and compared as a response.
 
-use crate::model::listed;
-use crate::names::nearest;
+use crate::words::{listed, nearest};
 use hyde_diag::{Span, diagnostics};
 use hyde_syntax::ast::Reference;
 use hyde_syntax::member;

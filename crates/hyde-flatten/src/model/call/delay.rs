@@ -6,8 +6,8 @@
 //! What is delayed is a variable; an expression gets one. T is structural: where it is 0, `delay(u, T)` is u itself, and
 //! the equations are others. In the observed form it is a plain parameter, so that it can be looked for.
 
-use crate::Form;
 use crate::dimension::Dim;
+use crate::input::Form;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::calls as refused;

@@ -3,52 +3,21 @@
 //! A call is replaced by the function's expressions, its arguments for its inputs, so that derivatives, units and events
 //! are those of the expression. A function sees its inputs and its own variables, nothing of the model.
 
-use crate::dimension::Dim;
-use crate::instance::{FieldPlace, InstanceId, Scope, Setting, Typed};
+use super::calls::Call;
+use crate::instance::{Scope, Typed};
 use crate::instantiate::quantity;
 use crate::model::Model;
 use crate::names::FileIndex;
 use crate::refusals::calls as refused;
-use crate::turns::Turns;
-use crate::zero::Zero;
 use hyde_diag::Span;
-use hyde_ir::ExprId;
 use hyde_syntax::ast::{
     Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Prefix, Reference,
 };
-use std::collections::HashMap;
 
 /// Calls within calls at most: recursion needs stack.
 const MAX_DEPTH: usize = 100;
 /// Calls that one call may lead to: functions that call others twice double them at every level.
 const MAX_CALLS: usize = 10_000;
-
-/// The calls of functions that are being replaced, and what is known of earlier ones.
-#[derive(Default)]
-pub(crate) struct Calls<'a> {
-    /// The functions, the outermost first.
-    within: Vec<&'a Class>,
-    /// How many the outermost call has led to.
-    count: usize,
-    /// Values of earlier calls.
-    known: HashMap<Called, Vec<(Call, Typed)>>,
-}
-
-/// The function that is called (the place of its name), from which instance, with which arguments.
-type Called = (Span, InstanceId, Vec<ExprId>);
-
-/// What counts of an argument: dimension, truth, bare number, turns, zero point.
-type Argued = (Dim, bool, bool, Turns, Zero);
-
-/// What beside its arguments' expressions the value of a call depends on.
-#[derive(Clone, PartialEq)]
-struct Call {
-    setting: Setting,
-    place: FieldPlace,
-    records: bool,
-    /// Of each argument dimension, truth, whether it is bare, its turns and its zero point; none that is not given.
-    arguments: Vec<Option<Argued>>,
-}
 
 impl<'a> Model<'a, '_> {
     /// The function of that name, seen from where the name is written.

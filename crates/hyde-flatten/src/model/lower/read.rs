@@ -1,6 +1,6 @@
 //! References: the value of what a name stands for.
 
-use super::resolve::Resolved;
+use super::resolved::Resolved;
 use crate::dimension::Dim;
 use crate::instance::{Counter, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;

@@ -1,31 +1,13 @@
 //! Names: what they stand for in scope.
 
+use super::resolved::Resolved;
 use super::subscript::{mentions_counter, without_elements};
 use crate::experiment::record_column;
-use crate::instance::{
-    Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Setting, Typed,
-};
+use crate::instance::{Elementwise, FieldPlace, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::values as refused;
 use hyde_diag::Span;
-use hyde_ir::{Index, ParamId, VarId};
 use hyde_syntax::ast::{Expr, ExprKind, Reference};
-
-/// What a name stands for.
-pub(crate) enum Resolved {
-    /// A variable; the element, if one is named.
-    Variable(VarId, Option<Index>),
-    /// A parameter; the element, if one is named.
-    Parameter(ParamId, Option<Index>),
-    Instance(InstanceId),
-    Counter(Counter),
-    Time,
-    Pi,
-    /// The coordinate of the domain the field expression is on.
-    Coordinate,
-    /// An input or variable of a function, or a measure.
-    Value(Typed),
-}
 
 impl<'a> Model<'a, '_> {
     /// What a name stands for in a function.

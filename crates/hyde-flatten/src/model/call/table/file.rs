@@ -2,8 +2,8 @@
 //! `table(x, "grease.csv")` from the first two.
 
 use super::Points;
-use crate::TableFile;
 use crate::dimension::Dim;
+use crate::input::TableFile;
 use crate::model::Model;
 use crate::refusals::calls as refused;
 use hyde_diag::Span;
