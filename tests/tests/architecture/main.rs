@@ -416,7 +416,6 @@ fn the_command_line_alone_touches_the_machine_but_for_the_files_a_study_reads() 
         if !product || doors_open.iter().any(|own| file.path.starts_with(own)) {
             continue;
         }
-        // Examples in the documentation may print; code of tests may do what it likes.
         let code = file.text.split("#[cfg(test)]\nmod tests").next();
         let is_test = file.path.ends_with("/tests.rs");
         for line in code.unwrap_or_default().lines().filter(|_| !is_test) {
