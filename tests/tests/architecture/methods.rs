@@ -6,7 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Types whose files are each one side of them: the crate, below `crates/hyde-`, and the type.
 const SPREAD: &[(&str, &str)] = &[
-    ("analysis", "System"),
     ("calibrate", "Diagnosis"),
     ("calibrate", "Forward"),
     ("calibrate", "Joint"),
