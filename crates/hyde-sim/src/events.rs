@@ -18,6 +18,7 @@ mod located;
 mod struck;
 
 use crate::consistent::Consistent;
+use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::is_active;
 use crate::moment::Moment;
@@ -304,7 +305,7 @@ impl Instant<'_, '_> {
                 let failure = Failure::new(FailureKind::Assert(message.clone()), self.now.t);
                 let failure = failure.at_origin(&reaction.origin);
                 let at = self.now.at();
-                return Err(failure.with_values(self.state, at, &reaction.text));
+                return Err(with_values(failure, self.state, at, &reaction.text));
             }
         }
         let held = if at_start {

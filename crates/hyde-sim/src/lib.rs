@@ -11,7 +11,7 @@
 //!              consistent values again, then on                                     consistent.rs
 //!              rows, energies, reductions and derivatives follow at the same hooks simulation/followers.rs
 //!              derivatives by parameters carried along, if they are asked for      sensitivity.rs
-//!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
+//!              what is delayed kept as polynomials, jumps with their arrivals       past.rs, delays.rs, history.rs
 //! or           the same piece by piece, for a caller with a clock of its own        session.rs
 //! ```
 //! The language is unknown here: a program could as well be written by hand, and the tests of this crate do that. What
@@ -39,6 +39,7 @@ mod loose;
 mod meter;
 mod moment;
 mod operating_point;
+mod past;
 mod reached;
 mod reductions;
 mod released;
@@ -61,8 +62,7 @@ mod surfaces;
 mod time_spent;
 mod zero;
 
-pub use failed_equation::Reading;
-pub use failure::{Failure, FailureKind};
+pub use failure::{Failure, FailureKind, Reading};
 pub use inputs::InputError;
 pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};

@@ -19,13 +19,13 @@ use self::session::Pieces;
 use self::step::Finished;
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
-use crate::delays;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::first_step;
 use crate::guards::{self, Crossing, Trail};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
+use crate::past;
 use crate::results::Results;
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
@@ -157,7 +157,7 @@ impl<'a> Simulation<'a> {
         let state = self.integrator.state();
         self.results.yielded = state.released.told(state, &self.integrator.now.y);
         self.results.parameters.clone_from(&state.p);
-        let left = delays::limits(&mut self.integrator, None);
+        let left = past::limits(&mut self.integrator, None);
         let (followers, mut run) = self.followers();
         followers.started(&mut run);
         if self.schedule.due(t) {
@@ -168,7 +168,7 @@ impl<'a> Simulation<'a> {
             followers.started(&mut run);
         }
         self.followers.rows.begin_behind(t);
-        delays::mark(&mut self.integrator, &mut self.consistent, left);
+        past::mark(&mut self.integrator, &mut self.consistent, left);
         Ok(())
     }
 

@@ -5,6 +5,7 @@
 //! when an event takes g away from zero. The equations while sliding are those of `sliding.rs`.
 
 use crate::events::Instant;
+use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::is_active;
 use crate::results::EventKind;
@@ -434,7 +435,7 @@ impl Instant<'_, '_> {
             });
         let at = self.now.at();
         causes.iter().fold(failure, |failure, cause| {
-            failure.with_values(self.state, at, cause)
+            with_values(failure, self.state, at, cause)
         })
     }
 }

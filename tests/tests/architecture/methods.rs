@@ -24,7 +24,6 @@ const SPREAD: &[(&str, &str)] = &[
     ("program", "Parameter"),
     ("program", "Program"),
     ("program", "Relation"),
-    ("sim", "Failure"),
     ("sim", "Instant"),
     ("sim", "State"),
     ("study", "Bench"),

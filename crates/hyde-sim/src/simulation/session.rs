@@ -3,10 +3,10 @@
 
 use super::Simulation;
 use super::step::{Finished, Step, Target, Work};
-use crate::delays;
 use crate::failure::Failure;
 use crate::guards::{self, is_active};
 use crate::moment::Moment;
+use crate::past;
 use crate::results::Event;
 use crate::sensitivity::Cause;
 use crate::session::Advance;
@@ -127,11 +127,11 @@ impl Simulation<'_> {
     /// Sets the parameter vector at the caller's time, as an instant of its own.
     pub(crate) fn enter_parameters(&mut self, parameters: Vec<f64>) -> Result<(), Box<Failure>> {
         self.stop_here()?;
-        let left = delays::limits(&mut self.integrator, Some(&mut self.consistent));
+        let left = past::limits(&mut self.integrator, Some(&mut self.consistent));
         self.integrator.state_mut().p = parameters;
         self.be_consistent()?;
         self.iterate(&[], false)?;
-        delays::mark(&mut self.integrator, &mut self.consistent, left);
+        past::mark(&mut self.integrator, &mut self.consistent, left);
         self.restart()?;
         self.stand();
         Ok(())
