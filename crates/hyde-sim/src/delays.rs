@@ -1,4 +1,4 @@
-//! [`Delays`]: the quantities that the model reads a time ago.
+//! [`Delays`]: the quantities that the model reads a time ago. They are kept along the run by [`past`](crate::past).
 //!
 //! No step is longer than the shortest delay, so what a step reads has been accepted before: a known function of the time
 //! (the method of steps; Bellen and Zennaro, Numerical Methods for Delay Differential Equations, 2003, ch. 4). What is held

@@ -5,10 +5,9 @@
 use crate::consistent::Consistent;
 use crate::failed_equation::{with_equation, with_values};
 use crate::failure::{Failure, FailureKind};
-use crate::first_step::FirstStep;
 use crate::moment::{At, Moment};
 use crate::setup::Setup;
-use crate::solver::Solver;
+use crate::solver::{FirstStep, Solver};
 use crate::state::State;
 use hyde_ida::Error;
 

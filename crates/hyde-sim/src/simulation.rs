@@ -6,15 +6,17 @@ mod instant;
 mod point;
 mod reduce;
 mod rows;
+mod run;
 mod session;
 mod snapshot;
 mod steady;
 mod step;
 
-pub use self::session::Advanced;
+pub use self::session::{Advance, Advanced};
 pub use self::snapshot::Snapshot;
 
-use self::followers::{Followers, Run};
+use self::followers::Followers;
+use self::run::Run;
 use self::session::Pieces;
 use self::step::Finished;
 use crate::clocks::Schedule;
@@ -26,6 +28,7 @@ use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
 use crate::past;
+use crate::release::told;
 use crate::results::Results;
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
@@ -155,7 +158,7 @@ impl<'a> Simulation<'a> {
         let t = self.integrator.now.t;
         self.settle()?;
         let state = self.integrator.state();
-        self.results.yielded = state.released.told(state, &self.integrator.now.y);
+        self.results.yielded = told(state, &self.integrator.now.y);
         self.results.parameters.clone_from(&state.p);
         let left = past::limits(&mut self.integrator, None);
         let (followers, mut run) = self.followers();

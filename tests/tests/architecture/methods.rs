@@ -24,8 +24,6 @@ const SPREAD: &[(&str, &str)] = &[
     ("program", "Parameter"),
     ("program", "Program"),
     ("program", "Relation"),
-    ("sim", "Instant"),
-    ("sim", "State"),
     ("study", "Bench"),
     ("study", "Project"),
     ("syntax", "Builder"),

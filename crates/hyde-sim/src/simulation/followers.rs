@@ -11,10 +11,8 @@
 
 use super::reduce::Reduced;
 use super::rows::{Row, Rows};
-use crate::clocks::Schedule;
-use crate::consistent::Consistent;
+use super::run::Run;
 use crate::delays::Limits;
-use crate::integrator::Integrator;
 use crate::meter::Meter;
 use crate::past;
 use crate::results::Results;
@@ -31,14 +29,6 @@ pub(super) struct Followers<'a> {
     reduced: Option<Reduced<'a>>,
     /// They go along with events as well.
     pub(super) sensitivities: Option<Sensitivities>,
-}
-
-/// The run that they follow.
-pub(super) struct Run<'r, 'a> {
-    pub(super) integrator: &'r mut Integrator<'a>,
-    pub(super) consistent: &'r mut Consistent,
-    pub(super) schedule: &'r Schedule,
-    pub(super) results: &'r mut Results,
 }
 
 /// What they keep of the left side of an instant.
