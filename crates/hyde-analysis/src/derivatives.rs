@@ -21,6 +21,7 @@ use hyde_ir::dae::Dependent;
 use hyde_ir::{Expr, ExprArena, ExprId, Memo, Range, VariableKind};
 use std::collections::{BTreeMap, BTreeSet};
 
+mod chain_rule;
 mod explicit;
 mod fixed;
 mod inline;
@@ -28,6 +29,8 @@ mod inputs;
 mod rates;
 mod wanted;
 
+pub(crate) use chain_rule::by_rates;
+pub(crate) use rates::{differentiated, new_rate};
 pub(crate) use wanted::kept as fixed_by_modes;
 
 /// Eliminates aliases and derivatives of explicit variables.
@@ -226,26 +229,6 @@ fn expand(
     None
 }
 
-/// The cells of continuous variables that stand under `der` anywhere in the equations.
-pub(crate) fn differentiated(system: &System) -> Cells {
-    let mut found = Cells::default();
-    let sides = system.equations.iter().map(|e| (e.range, [e.lhs, e.rhs]));
-    let branches = system
-        .slots
-        .iter()
-        .flat_map(|s| &s.branches)
-        .map(|b| (Range::SCALAR, [b.lhs, b.rhs]));
-    for (range, sides) in sides.chain(branches) {
-        for id in system.flat.exprs.below(&sides) {
-            if let Expr::Der(var, index) = system.flat.exprs[id] {
-                let (first, last) = System::interval(index, range);
-                found.insert(var, first, last);
-            }
-        }
-    }
-    found
-}
-
 /// The variables of an equation if it has no derivative and every variable in it can be differentiated.
 fn state_leaves(
     system: &System,
@@ -280,19 +263,4 @@ fn state_leaves(
         }
     }
     Some(found)
-}
-
-/// The time derivative of an expression by the chain rule; variables without a rate do not change.
-pub(crate) fn by_rates(system: &mut System, id: ExprId, rates: &BTreeMap<Cell, ExprId>) -> ExprId {
-    system.note_differentiated(id);
-    let one = system.exprs().constant(1.0);
-    system.flat.exprs.tangent(id, |_, leaf| {
-        if leaf == Expr::Time {
-            return Some(one);
-        }
-        let Expr::Var(var, index) = leaf else {
-            return None;
-        };
-        rates.get(&System::cell(var, index)?).copied()
-    })
 }

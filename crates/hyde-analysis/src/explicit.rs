@@ -12,14 +12,11 @@
 use crate::graph::strongly_connected_components;
 use crate::matching::{Matched, Node, sides};
 use crate::segments::Segment;
-use crate::shapes::is_shape;
+use crate::shapes::{A_FEW, is_shape};
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId};
 use std::collections::{HashMap, HashSet};
-
-/// More values than the components of a drive have connectors, fewer than a field has nodes.
-pub(crate) const A_FEW: usize = 8;
 
 /// What becomes of the unknowns.
 pub(crate) struct Order {

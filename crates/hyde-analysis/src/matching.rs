@@ -5,25 +5,21 @@
 //! other, equations too many or too few with the part of the system they conflict in (Dulmage and Mendelsohn).
 
 mod mismatch;
+mod node;
 
 use crate::graph::Bipartite;
 use crate::mode_constraints;
+use crate::pins::mark;
 use crate::segments::{self, Segment};
-use crate::system::{Equation, Slot, System};
-use crate::{pins, unroll};
-use hyde_diag::{Diagnostics, Origin};
-use hyde_ir::{BinaryOp, Expr, ExprId, Range, UnaryOp};
-pub(crate) use mismatch::{missing_boundary, name, plural, short, unbound_input};
+use crate::system::System;
+use crate::unroll;
+use hyde_diag::Diagnostics;
+use hyde_ir::{BinaryOp, Expr, ExprId, UnaryOp};
+pub(crate) use mismatch::{missing_boundary, name, unbound_input};
 use mismatch::{report, undetermined};
+pub(crate) use node::{Node, origin, sides};
 use std::cmp::Ordering;
 use std::collections::HashMap;
-
-/// An equation node: a number of the list of equations, or of the slots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Node {
-    Equation(usize),
-    Slot(usize),
-}
 
 /// The matched system.
 pub(crate) struct Matched {
@@ -53,7 +49,7 @@ pub(crate) fn match_equations(
             }
         }
     };
-    pins::mark(system, &unknowns);
+    mark(system, &unknowns);
     unknowns.sort_unstable();
     if mode_constraints::refuse(system, &unknowns, diagnostics) {
         return None;
@@ -84,33 +80,6 @@ pub(crate) fn match_equations(
         unknowns,
         equation_of,
     })
-}
-
-/// The sides of a node with their range; of a slot those of the modes that pin nothing, or of all if all pin.
-pub(crate) fn sides(system: &System, node: Node) -> Vec<(Range, ExprId, ExprId)> {
-    match node {
-        Node::Equation(number) => {
-            let Equation {
-                range, lhs, rhs, ..
-            } = system.equations[number];
-            vec![(range, lhs, rhs)]
-        }
-        Node::Slot(number) => {
-            let branches = &system.slots[number].branches;
-            let free: Vec<_> = branches
-                .iter()
-                .filter(|branch| branch.pin.is_none())
-                .collect();
-            let list = if free.is_empty() {
-                branches.iter().collect()
-            } else {
-                free
-            };
-            list.into_iter()
-                .map(|branch| (Range::SCALAR, branch.lhs, branch.rhs))
-                .collect()
-        }
-    }
 }
 
 /// The unknowns an equation can determine, best first: what it is written for, derivatives, the rest. Of several derivatives
@@ -198,21 +167,4 @@ fn constant_factors(system: &System, sums: [ExprId; 2]) -> HashMap<ExprId, f64> 
         }
     }
     factors
-}
-
-/// The origin of a node.
-pub(crate) fn origin(system: &System, node: Node) -> Origin {
-    match node {
-        Node::Equation(number) => system.equations[number].origin.clone(),
-        Node::Slot(number) => {
-            let Slot {
-                branches,
-                automaton,
-            } = &system.slots[number];
-            branches.first().map_or_else(
-                || system.flat.automata[*automaton].origin.clone(),
-                |b| b.origin.clone(),
-            )
-        }
-    }
 }

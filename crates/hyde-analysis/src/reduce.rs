@@ -11,29 +11,18 @@
 //! variables of their own; m - k rows tie derivatives to rates, each to the variable that the run picks by the
 //! constraints' Jacobian. A switch changes the c in the memory, neither layout nor sparsity (M1, M6).
 
-use crate::derivatives::by_rates;
+use crate::derivatives::{by_rates, new_rate};
 use crate::graph::Bipartite;
 use crate::matching::{self, Node};
 use crate::segments;
 use crate::split;
-use crate::system::{Cell, Equation, System};
+use crate::system::{Cell, Equation, Group, System};
 use hyde_diag::{MadeBy, Origin};
 use hyde_ir::{Expr, ExprId, Index, Quantity, Range, VarId, Variable, VariableKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An equation is differentiated so often at most: three are needed where a motion is prescribed and its jerk is read.
 const MAX_ORDER: u8 = 5;
-
-/// Constraints between variables of one order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Group {
-    /// The variables with their rates.
-    pub(crate) candidates: Vec<(Cell, ExprId)>,
-    /// Number of constraints.
-    pub(crate) constraints: usize,
-    /// The factors of the rows, row by row, in the memory; `None` if the constraints determine every variable.
-    pub(crate) factors: Option<VarId>,
-}
 
 /// Differentiates what constrains states. What cannot be treated so stays as it is, for the matching to report.
 pub(crate) fn reduce(system: &mut System) {
@@ -309,32 +298,6 @@ fn pinned(system: &System, cell: Cell) -> bool {
         .any(|(side, value)| system.flat.exprs[side] == leaf && system.is_parametric(value))
 }
 
-/// A new variable for the derivative of a scalar or of an element.
-pub(crate) fn new_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
-    let name = format!("der({})", system.cell_name(cell));
-    let of = &system.flat.variables[cell.0];
-    let dimension = of.quantity.dimension.divide(hyde_units::Dimension::TIME);
-    let variable = Variable {
-        name,
-        len: None,
-        first: 1,
-        kind: VariableKind::Continuous,
-        quantity: Quantity::usual(dimension),
-        start: Vec::new(),
-        fixed: false,
-        start_given: false,
-        freed: false,
-        state: hyde_ir::StateChoice::Open,
-        flow: false,
-        boolean: false,
-        input: false,
-        trace: None,
-        origin: of.origin.made_by(MadeBy::Derivative),
-    };
-    let id = system.flat.variables.push(variable);
-    Some(system.exprs().add(Expr::Var(id, Index::SCALAR)))
-}
-
 /// The time derivative of an expression: of a variable with a rate that rate, of any other its derivative.
 fn derivative(system: &mut System, id: ExprId, group: &Group) -> Option<ExprId> {
     let mut rates: BTreeMap<Cell, ExprId> = BTreeMap::new();
@@ -430,13 +393,4 @@ fn factors(system: &mut System, number: usize, len: usize, origin: &Origin) -> V
         trace: None,
         origin: origin.made_by(MadeBy::Derivative),
     })
-}
-
-impl System {
-    /// The variable that stands for the derivative of a variable of a group.
-    pub(crate) fn rate_of(&self, cell: Cell) -> Option<ExprId> {
-        let candidates = self.groups.iter().flat_map(|group| &group.candidates);
-        let mut found = candidates.filter(|(own, _)| *own == cell);
-        found.next().map(|(_, rate)| *rate)
-    }
 }

@@ -1,11 +1,12 @@
-//! Every diagnostic of analysis, as data: a file for each group of passes. A pass reports what a function of its file makes.
+//! Every diagnostic of analysis, as data: a file for each group of passes, and `words` with what several of them say. A pass
+//! reports what a function of its file makes.
 
 pub(crate) mod clocked;
 pub(crate) mod conflicts;
 pub(crate) mod states;
 pub(crate) mod unmatched;
+pub(crate) mod words;
 
-use crate::regularity::and;
 use crate::system::System;
 use hyde_diag::{Origin, Span};
 
@@ -20,26 +21,3 @@ pub(crate) fn place_of(system: &System, origin: &Origin) -> Place {
 
 /// A component with its declaration.
 type Part = (String, Span);
-
-fn parts_as_words(parts: &[Part]) -> String {
-    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
-    and(&names)
-}
-
-fn quoted(names: &[String]) -> Vec<String> {
-    names.iter().map(|name| format!("`{name}`")).collect()
-}
-
-/// The first names, and a sign that there are more.
-fn a_few(names: &[String], most: usize) -> String {
-    some_of(&names[..names.len().min(most)], names.len())
-}
-
-/// Some names of so many, and a sign that there are more.
-fn some_of(names: &[String], all: usize) -> String {
-    let more = match all > names.len() {
-        true => ", …",
-        false => "",
-    };
-    format!("{}{more}", quoted(names).join(", "))
-}

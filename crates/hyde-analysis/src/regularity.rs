@@ -22,7 +22,7 @@ mod words;
 use crate::system::System;
 pub(crate) use closed::held_once_more;
 use hyde_diag::Diagnostics;
-pub(crate) use words::{and, noun};
+pub(crate) use words::noun;
 
 /// Reports what makes the model singular; whether anything does.
 pub(crate) fn refuse(system: &System, diagnostics: &mut Diagnostics) -> bool {

@@ -8,11 +8,13 @@
 //!     d weights/d x[i] = f'(x - i);  F by x: sum(d weights/d x[i]*q[i])
 //! ```
 
-use crate::explicit::A_FEW;
 use crate::partials::{Pieces, wrt};
 use hyde_ir::dae::{Dae, Definition, Place, Space, Wrt};
 use hyde_ir::{Expr, ExprArena, ExprId, Range, VarId};
 use std::collections::BTreeMap;
+
+/// More values than the components of a drive have connectors, fewer than a field has nodes.
+pub(crate) const A_FEW: usize = 8;
 
 /// The derivatives of each shape: by what, and the array that has them.
 pub(crate) type Slopes = BTreeMap<VarId, Vec<(Wrt, VarId)>>;

@@ -1,7 +1,8 @@
 //! What authors said of variables as states (`state = always`), held against what became of them.
 
 use crate::derivatives::fixed_by_modes;
-use crate::refusals::{place_of, states as refused};
+use crate::refusals::place_of;
+use crate::refusals::states::{self as refused, NoState};
 use crate::system::{Cell, System};
 use hyde_diag::{Diagnostic, Diagnostics, Severity, Span};
 use hyde_ir::dae::{Alias, Dae, Space};
@@ -118,20 +119,6 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
         StateChoice::Prefer | StateChoice::Avoid | StateChoice::Open => Severity::Warning,
     };
     diagnostic
-}
-
-/// Why a variable is not a state.
-pub(crate) enum NoState {
-    /// Its value is constant.
-    Constant,
-    /// Nothing has its derivative.
-    NotDifferentiated,
-    /// This equation determines it from variables of which modes fix these.
-    OthersAreFixed(Span, Vec<String>),
-    /// This equation determines it from others that are chosen too.
-    OthersAreChosen(Span),
-    /// This equation determines it from others.
-    Follows(Span),
 }
 
 fn no_state(dae: &Dae, system: &System, var: VarId) -> NoState {

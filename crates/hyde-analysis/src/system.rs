@@ -1,6 +1,5 @@
 //! The model while it is analysed: its equations as one list, those of modes in slots.
 
-use crate::reduce::Group;
 use crate::solve::divisor;
 use hyde_diag::{InstancePath, Origin, Span};
 use hyde_ir::dae::{Alias, Dependent};
@@ -41,6 +40,17 @@ pub(crate) struct Equation {
     pub(crate) order: u8,
     /// It constrains variables of a group, and has been differentiated for that.
     pub(crate) constraint: bool,
+}
+
+/// Constraints between variables of one order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Group {
+    /// The variables with their rates.
+    pub(crate) candidates: Vec<(Cell, ExprId)>,
+    /// Number of constraints.
+    pub(crate) constraints: usize,
+    /// The factors of the rows, row by row, in the memory; `None` if the constraints determine every variable.
+    pub(crate) factors: Option<VarId>,
 }
 
 /// The model under analysis.
@@ -137,6 +147,13 @@ impl System {
         let name = origin.instance.as_str().split('.').next()?;
         let span = self.flat.declared.get(&InstancePath::root().child(name))?;
         (!name.is_empty()).then(|| (name.to_owned(), *span))
+    }
+
+    /// The variable that stands for the derivative of a variable of a group.
+    pub(crate) fn rate_of(&self, cell: Cell) -> Option<ExprId> {
+        let candidates = self.groups.iter().flat_map(|group| &group.candidates);
+        let mut found = candidates.filter(|(own, _)| *own == cell);
+        found.next().map(|(_, rate)| *rate)
     }
 
     /// Whether a variable is determined by the continuous equations.

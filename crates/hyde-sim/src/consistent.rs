@@ -5,6 +5,7 @@
 //! factors come the derivatives of v along the flow, which tell in which direction a root function leaves zero (M2) and
 //! how large the first step may be.
 
+use crate::failed_equation::with_equation;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
 use crate::singular;
@@ -141,7 +142,7 @@ impl Consistent {
         };
         let failure = Failure::new(kind, at.t).at_row(state.program, worst, at.y);
         let left = Some(self.residual[worst]);
-        Err(failure.with_equation(state, at, worst, left))
+        Err(with_equation(failure, state, at, worst, left))
     }
 
     /// The derivatives along the flow of y (all of it) and of the states' y', after [`Consistent::solve`] at the point.

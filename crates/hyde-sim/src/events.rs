@@ -13,13 +13,16 @@
 //! would fire for ever.
 
 mod branches;
+mod edges;
 mod endless;
 mod located;
+mod slides;
 mod struck;
 
+use crate::active::is_active;
 use crate::consistent::Consistent;
+use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
-use crate::guards::is_active;
 use crate::moment::Moment;
 use crate::results::{Event, EventKind};
 use crate::root_rates::root_rates;
@@ -257,7 +260,7 @@ impl Instant<'_, '_> {
                 } else {
                     rate.mean > 0.0
                 };
-                let band = zero::doubt(root, truth, rate);
+                let band = zero::doubt(root, truth, rate.detour());
                 if band > 0.0 {
                     doubtful.push((number, band));
                 }
@@ -304,7 +307,7 @@ impl Instant<'_, '_> {
                 let failure = Failure::new(FailureKind::Assert(message.clone()), self.now.t);
                 let failure = failure.at_origin(&reaction.origin);
                 let at = self.now.at();
-                return Err(failure.with_values(self.state, at, &reaction.text));
+                return Err(with_values(failure, self.state, at, &reaction.text));
             }
         }
         let held = if at_start {

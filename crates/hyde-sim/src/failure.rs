@@ -1,11 +1,8 @@
 //! [`Failure`]: why a run could not go on, in the words of the model.
 
-use crate::failed_equation::Reading;
-use crate::moment::At;
 use crate::results::Results;
-use crate::state::State;
 use hyde_diag::Origin;
-use hyde_program::{Function, Program};
+use hyde_program::Program;
 
 /// The kinds of failures.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +66,19 @@ pub enum FailureKind {
     Interrupted,
 }
 
+/// An unknown, or the rate of one, in an equation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Name of the unknown.
+    pub name: String,
+    /// Whether it is its derivative by time.
+    pub is_rate: bool,
+    /// Its value, SI.
+    pub value: f64,
+    /// What the left side minus the right side would lose if it were 0, SI.
+    pub part: f64,
+}
+
 /// Why a run could not go on.
 #[derive(Clone, Debug)]
 pub struct Failure {
@@ -121,10 +131,10 @@ impl Failure {
         self.at_unknown(program, row, y)
     }
 
-    /// Tells the modes the automata are in.
-    pub(crate) fn in_modes(mut self: Box<Self>, state: &State<'_>) -> Box<Self> {
-        for automaton in &state.program.automata {
-            let number = state.z.get(automaton.place).copied().unwrap_or(0.0);
+    /// Tells the modes the automata are in by the memory.
+    pub(crate) fn in_modes(mut self: Box<Self>, program: &Program, z: &[f64]) -> Box<Self> {
+        for automaton in &program.automata {
+            let number = z.get(automaton.place).copied().unwrap_or(0.0);
             let mode = automaton
                 .modes
                 .iter()
@@ -148,25 +158,6 @@ impl Failure {
         if !self.unknowns.iter().any(|(known, _)| *known == name) {
             self.unknowns
                 .push((name, y.get(position).copied().unwrap_or(f64::NAN)));
-        }
-        self
-    }
-
-    /// Names what a condition, as printed, reads, with the values at a time, of unknowns and their rates.
-    pub(crate) fn with_values(
-        mut self: Box<Self>,
-        state: &mut State<'_>,
-        at: At<'_>,
-        condition: &str,
-    ) -> Box<Self> {
-        let program = state.program;
-        let values = state.values(Function::Outputs, at);
-        let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
-        for word in condition.split(|c| !is_name(c)) {
-            let known = self.unknowns.iter().any(|(name, _)| name == word);
-            if let (false, Some(output)) = (known, program.output(word)) {
-                self.unknowns.push((word.to_owned(), values[output]));
-            }
         }
         self
     }

@@ -3,25 +3,18 @@
 //! And it must not step over what has just begun: where a root function leaves zero and turns back, as the height of a ball
 //! does, it returns after 2|g'/g''|, in a flight that may be lower than the tolerance.
 
+use crate::active::is_active;
 use crate::consistent::Consistent;
-use crate::guards::is_active;
 use crate::integrator::Integrator;
 use crate::moment::At;
 use crate::setup::Setup;
+use crate::solver::FirstStep;
 use crate::state::State;
 use crate::zero::{ROUNDING, located_s};
 use hyde_program::{Function, Wrt};
 
 /// The part of the way back to zero that the first step may be.
 const PART_OF_RETURN: f64 = 0.02;
-
-/// What bounds the first step, in s.
-pub(crate) struct FirstStep {
-    /// A step of order 1 is as exact as the tolerance asks, and a small part of what is left of the run.
-    pub(crate) by_curvature_s: f64,
-    /// Longer ones may step over what has just begun.
-    pub(crate) longest_s: f64,
-}
 
 /// The first step from consistent values. The algebraic variables get their slopes along the flow, which the
 /// solver's first guess of them follows.

@@ -7,10 +7,11 @@
 //! it there, or where the step may have gone over a kink of a record, they are looked at over the whole step: the interpolant
 //! of a force bends there to a crossing that there is not, or that is earlier or later.
 
+use crate::active::is_active;
 use crate::consistent::Consistent;
 use crate::integrator::Integrator;
 use crate::moment::Moment;
-use crate::slides::margins;
+use crate::slide::margins;
 use crate::state::State;
 use hyde_program::Function;
 use smallvec::SmallVec;
@@ -83,13 +84,6 @@ pub(crate) fn active(state: &State<'_>) -> Vec<usize> {
         .filter(watched)
         .chain(margins)
         .collect()
-}
-
-/// Whether a relation matters in the current modes, and is neither held at its zero nor followed.
-pub(crate) fn is_active(state: &State<'_>, relation: usize) -> bool {
-    let used = state.program.relations[relation].used;
-    let matters = used.matters(|automaton, mode| state.in_mode(automaton, mode));
-    matters && !state.is_loose(relation) && !state.slides.iter().any(|slide| slide.holds(relation))
 }
 
 /// The first change of a watched relation within the last step, which began at `from`. Without one, relations that have left

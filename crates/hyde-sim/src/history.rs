@@ -168,8 +168,8 @@ impl History {
     }
 }
 
-#[cfg(test)]
 #[allow(clippy::float_cmp, reason = "limits at a jump are exact")]
+#[cfg(test)]
 mod tests {
     use super::*;
 

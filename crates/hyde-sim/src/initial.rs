@@ -7,7 +7,7 @@
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
-use crate::released::{self, by_parameter};
+use crate::release::{self, by_parameter};
 use crate::selection;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
@@ -70,7 +70,7 @@ pub(crate) fn solve(
     }
     if round == Round::First && count > 0 {
         guess_relations(state, now.at(), Known::All);
-        released::choose(state, consistent, now.at(), count)?;
+        release::choose(state, consistent, now.at(), count)?;
     }
     let Shape {
         n,
@@ -124,7 +124,7 @@ pub(crate) fn solve(
         let mut values_now = values(state, now.at(), &positions, &found, count);
         if solver.factor(&values_now).is_err() && iteration == 0 {
             // A product of unknowns that both start at 0 says nothing there: look from elsewhere once.
-            released::move_released(state, &mut now.y);
+            release::move_released(state, &mut now.y);
             r = residual(state, now.at(), &past);
             values_now = values(state, now.at(), &positions, &found, count);
         }

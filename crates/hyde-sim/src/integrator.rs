@@ -3,11 +3,11 @@
 //! What the tolerances of a step are is decided here; how a step is taken, by the [`Solver`] inside.
 
 use crate::consistent::Consistent;
+use crate::failed_equation::{with_equation, with_values};
 use crate::failure::{Failure, FailureKind};
-use crate::first_step::FirstStep;
 use crate::moment::{At, Moment};
 use crate::setup::Setup;
-use crate::solver::Solver;
+use crate::solver::{FirstStep, Solver};
 use crate::state::State;
 use hyde_ida::Error;
 
@@ -253,13 +253,13 @@ impl<'a> Integrator<'a> {
 
     /// A failure with what stands in the equation of a row at the present point.
     pub(crate) fn with_equation(&mut self, failure: Box<Failure>, row: usize) -> Box<Failure> {
-        failure.with_equation(self.solver.state_mut(), self.now.at(), row, None)
+        with_equation(failure, self.solver.state_mut(), self.now.at(), row, None)
     }
 
     /// A failure with the values that conditions read at the present point.
     pub(crate) fn with_values(&mut self, failure: Box<Failure>, of: &[String]) -> Box<Failure> {
         of.iter().fold(failure, |failure, condition| {
-            failure.with_values(self.solver.state_mut(), self.now.at(), condition)
+            with_values(failure, self.solver.state_mut(), self.now.at(), condition)
         })
     }
 
@@ -301,7 +301,7 @@ impl<'a> Integrator<'a> {
                 t: failed.t,
                 ..self.now.at()
             };
-            failure = failure.with_equation(self.solver.state_mut(), at, row, failed.residual);
+            failure = with_equation(failure, self.solver.state_mut(), at, row, failed.residual);
         }
         if let Some(unknown) = failed.unknown {
             failure = failure.at_unknown(program, unknown, &self.now.y);

@@ -7,21 +7,21 @@
 //!              states chosen anew where constraints tie them                     selection.rs
 //!              guards checked on the step's interpolant; the first crossing located guards.rs
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
-//!              what both sides lead back to is slid on                              slides.rs, sliding.rs, surfaces.rs
+//!              what both sides lead back to is slid on                              events/slides.rs, state/sliding.rs
 //!              consistent values again, then on                                     consistent.rs
 //!              rows, energies, reductions and derivatives follow at the same hooks simulation/followers.rs
 //!              derivatives by parameters carried along, if they are asked for      sensitivity.rs
-//!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
+//!              what is delayed kept as polynomials, jumps with their arrivals       past.rs, delays.rs, history.rs
 //! or           the same piece by piece, for a caller with a clock of its own        session.rs
 //! ```
 //! The language is unknown here: a program could as well be written by hand, and the tests of this crate do that. What
 //! fails is a [`Failure`] with the time and the origin of the equation.
 
+mod active;
 mod clocks;
 mod consistent;
 mod creeping;
 mod delays;
-mod edges;
 mod events;
 mod failed_equation;
 mod failure;
@@ -35,12 +35,13 @@ mod inputs;
 mod integrator;
 mod known_start;
 mod lobatto;
-mod loose;
 mod meter;
 mod moment;
 mod operating_point;
+mod past;
 mod reached;
 mod reductions;
+mod release;
 mod released;
 mod residual_partials;
 mod results;
@@ -52,17 +53,14 @@ mod session;
 mod setup;
 mod simulation;
 mod singular;
-mod slides;
-mod sliding;
+mod slide;
 mod solver;
 mod start_modes;
 mod state;
-mod surfaces;
 mod time_spent;
 mod zero;
 
-pub use failed_equation::Reading;
-pub use failure::{Failure, FailureKind};
+pub use failure::{Failure, FailureKind, Reading};
 pub use inputs::InputError;
 pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
@@ -71,9 +69,9 @@ pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
     Statistics, Yielded,
 };
-pub use session::{Advance, Advanced, Session, Variation};
+pub use session::{Session, Variation};
 pub use setup::Setup;
-pub use simulation::Snapshot;
+pub use simulation::{Advance, Advanced, Snapshot};
 
 use hyde_program::Program;
 

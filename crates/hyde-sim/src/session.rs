@@ -7,20 +7,8 @@
 use crate::failure::Failure;
 use crate::results::Event;
 use crate::setup::Setup;
-pub use crate::simulation::Advanced;
-use crate::simulation::{Simulation, Snapshot};
+use crate::simulation::{Advance, Advanced, Simulation, Snapshot};
 use hyde_program::Program;
-
-/// How far a session goes beyond what is asked for, and where it stops before.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Advance {
-    /// The solver may take steps that end behind the time asked for: nothing is going to be set there.
-    pub may_pass: bool,
-    /// Stop in front of an event: the caller asks for it by [`Session::happen`].
-    pub stop_at_events: bool,
-    /// Stop at the end of each step of the solver before the time asked for.
-    pub stop_at_steps: bool,
-}
 
 /// A change of what a session is given at a point, or of what follows from it there.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,26 +6,29 @@ mod instant;
 mod point;
 mod reduce;
 mod rows;
+mod run;
 mod session;
 mod snapshot;
 mod steady;
 mod step;
 
-pub use self::session::Advanced;
+pub use self::session::{Advance, Advanced};
 pub use self::snapshot::Snapshot;
 
-use self::followers::{Followers, Run};
+use self::followers::Followers;
+use self::run::Run;
 use self::session::Pieces;
 use self::step::Finished;
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
-use crate::delays;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::first_step;
 use crate::guards::{self, Crossing, Trail};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
+use crate::past;
+use crate::release::told;
 use crate::results::Results;
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
@@ -155,9 +158,9 @@ impl<'a> Simulation<'a> {
         let t = self.integrator.now.t;
         self.settle()?;
         let state = self.integrator.state();
-        self.results.yielded = state.released.told(state, &self.integrator.now.y);
+        self.results.yielded = told(state, &self.integrator.now.y);
         self.results.parameters.clone_from(&state.p);
-        let left = delays::limits(&mut self.integrator, None);
+        let left = past::limits(&mut self.integrator, None);
         let (followers, mut run) = self.followers();
         followers.started(&mut run);
         if self.schedule.due(t) {
@@ -168,7 +171,7 @@ impl<'a> Simulation<'a> {
             followers.started(&mut run);
         }
         self.followers.rows.begin_behind(t);
-        delays::mark(&mut self.integrator, &mut self.consistent, left);
+        past::mark(&mut self.integrator, &mut self.consistent, left);
         Ok(())
     }
 

@@ -43,7 +43,7 @@ pub(crate) fn failure(
         singular: singular.collect(),
         at_start,
     };
-    let mut failure = Failure::new(kind, at.t).in_modes(state);
+    let mut failure = Failure::new(kind, at.t).in_modes(state.program, &state.z);
     let named = open
         .iter()
         .map(|&(column, change)| (solved_for(state, column), change));

@@ -2,7 +2,6 @@
 
 use crate::creeping::Creeping;
 use crate::failure::{Failure, FailureKind};
-use crate::first_step::FirstStep;
 use crate::moment::{At, Moment};
 use crate::runge_kutta::{Factors, RungeKutta};
 use crate::setup::Setup;
@@ -19,6 +18,14 @@ pub(crate) enum Solver<'a> {
     },
     Ida(Box<Multistep<'a>>),
     RungeKutta(Box<RungeKutta<State<'a>>>),
+}
+
+/// What bounds the first step, in s.
+pub(crate) struct FirstStep {
+    /// A step of order 1 is as exact as the tolerance asks, and a small part of what is left of the run.
+    pub(crate) by_curvature_s: f64,
+    /// Longer ones may step over what has just begun.
+    pub(crate) longest_s: f64,
 }
 
 /// IDA, and what the change to the one-step method takes.

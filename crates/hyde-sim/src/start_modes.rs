@@ -1,7 +1,7 @@
 //! Modes that cannot be with the values that states have, at the start and after an impact: they are left.
 
+use crate::active::is_active;
 use crate::failure::{Failure, FailureKind};
-use crate::guards::is_active;
 use crate::moment::At;
 use crate::state::State;
 use hyde_program::{Firmness, Function, InitialCondition, Program, ReactionKind, Target};

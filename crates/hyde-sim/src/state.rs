@@ -1,5 +1,10 @@
 //! [`State`]: the model where the run is, with everything a kernel needs. It is the system that IDA solves.
 
+mod loose;
+mod parameters;
+mod sliding;
+mod surfaces;
+
 use crate::delays::Delays;
 use crate::failure::Failure;
 use crate::foreign::ForeignInstances;
@@ -8,9 +13,10 @@ use crate::moment::{At, Moment};
 use crate::released::Released;
 use crate::residual_partials::ResidualPartials;
 use crate::setup::Setup;
-use crate::sliding::{Slide, Surface};
+use crate::slide::{Slide, Surface};
 use hyde_ida::{Recoverable, System};
 use hyde_program::{Function, Point, Program, SomeRows, TickWrt, Workspace};
+pub(crate) use parameters::places_to_find;
 
 /// The model between and during calls of the solver.
 pub(crate) struct State<'a> {
@@ -207,7 +213,7 @@ impl<'a> State<'a> {
         let weights = self.weights(at);
         let mut after = self.mean(&weights, &mut |state| state.tick_side(clock, at, delayed));
         for slide in &self.slides {
-            for (place, _) in slide.settings(self, 0) {
+            for (place, _) in slide.settings(self.program, 0) {
                 after[place] = self.z[place];
             }
         }

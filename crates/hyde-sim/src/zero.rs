@@ -16,7 +16,6 @@
 //! that counts as 0 goes is found in [`root_rates`](crate::root_rates).
 
 use crate::moment::At;
-use crate::root_rates::RootRate;
 use crate::state::State;
 use hyde_program::{Function, Wrt};
 
@@ -88,13 +87,14 @@ pub(crate) fn contradicts(root: f64, truth: bool) -> bool {
     root != 0.0 && (root > 0.0) != truth
 }
 
-/// How far from zero a relation with this truth says nothing after an instant.
-pub(crate) fn doubt(root: f64, truth: bool, rate: RootRate) -> f64 {
+/// How far from zero a relation with this truth says nothing after an instant, where its root function may be so far on the
+/// other side before it goes where it goes.
+pub(crate) fn doubt(root: f64, truth: bool, detour: f64) -> f64 {
     let band = match contradicts(root, truth) {
         true => 2.0 * root.abs(),
         false => 0.0,
     };
-    band + rate.detour()
+    band + detour
 }
 
 /// How far from zero each root function is when its relation is followed no longer.

@@ -6,7 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Types whose files are each one side of them: the crate, below `crates/hyde-`, and the type.
 const SPREAD: &[(&str, &str)] = &[
-    ("analysis", "System"),
     ("calibrate", "Diagnosis"),
     ("calibrate", "Forward"),
     ("calibrate", "Joint"),
@@ -25,9 +24,6 @@ const SPREAD: &[(&str, &str)] = &[
     ("program", "Parameter"),
     ("program", "Program"),
     ("program", "Relation"),
-    ("sim", "Failure"),
-    ("sim", "Instant"),
-    ("sim", "State"),
     ("study", "Bench"),
     ("study", "Project"),
     ("syntax", "Builder"),

@@ -169,7 +169,7 @@ impl Explicit {
             known.insert(cell, rate);
             rates.insert(cell, rate);
         }
-        Some(super::by_rates(system, id, &rates))
+        Some(super::chain_rule::by_rates(system, id, &rates))
     }
 }
 

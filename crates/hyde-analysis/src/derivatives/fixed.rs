@@ -1,9 +1,8 @@
 //! Rates that modes fix: `der(rel) = 0` becomes `w = 0` with `w = der(rel)`, and w, which others may give, one of the states.
 
-use super::rates::{covering, rates};
+use super::rates::{covering, new_rate, rates};
 use crate::alias;
 use crate::pins::Values;
-use crate::reduce::new_rate;
 use crate::segments;
 use crate::system::{Branch, Cell, Equation, System};
 use hyde_diag::MadeBy;

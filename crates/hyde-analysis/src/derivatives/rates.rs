@@ -1,8 +1,9 @@
 //! One variable for each derivative: where an equation says `v = der(x)`, every other `der(x)` reads `v`.
 
 use crate::cells::Cells;
-use crate::system::System;
-use hyde_ir::{Expr, ExprId, Index, Memo, Range, VarId};
+use crate::system::{Cell, System};
+use hyde_diag::MadeBy;
+use hyde_ir::{Expr, ExprId, Index, Memo, Quantity, Range, VarId, Variable, VariableKind};
 use std::collections::BTreeMap;
 
 /// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
@@ -190,4 +191,50 @@ fn in_ranges(system: &System) -> Cells {
         }
     }
     found
+}
+
+/// The cells of continuous variables that stand under `der` anywhere in the equations.
+pub(crate) fn differentiated(system: &System) -> Cells {
+    let mut found = Cells::default();
+    let sides = system.equations.iter().map(|e| (e.range, [e.lhs, e.rhs]));
+    let branches = system
+        .slots
+        .iter()
+        .flat_map(|s| &s.branches)
+        .map(|b| (Range::SCALAR, [b.lhs, b.rhs]));
+    for (range, sides) in sides.chain(branches) {
+        for id in system.flat.exprs.below(&sides) {
+            if let Expr::Der(var, index) = system.flat.exprs[id] {
+                let (first, last) = System::interval(index, range);
+                found.insert(var, first, last);
+            }
+        }
+    }
+    found
+}
+
+/// A new variable for the derivative of a scalar or of an element.
+pub(crate) fn new_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
+    let name = format!("der({})", system.cell_name(cell));
+    let of = &system.flat.variables[cell.0];
+    let dimension = of.quantity.dimension.divide(hyde_units::Dimension::TIME);
+    let variable = Variable {
+        name,
+        len: None,
+        first: 1,
+        kind: VariableKind::Continuous,
+        quantity: Quantity::usual(dimension),
+        start: Vec::new(),
+        fixed: false,
+        start_given: false,
+        freed: false,
+        state: hyde_ir::StateChoice::Open,
+        flow: false,
+        boolean: false,
+        input: false,
+        trace: None,
+        origin: of.origin.made_by(MadeBy::Derivative),
+    };
+    let id = system.flat.variables.push(variable);
+    Some(system.exprs().add(Expr::Var(id, Index::SCALAR)))
 }

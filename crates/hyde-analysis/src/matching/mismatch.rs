@@ -2,8 +2,9 @@
 
 mod massless;
 
-use super::{Node, origin, sides};
+use super::node::{Node, origin, sides};
 use crate::graph::{Bipartite, Matching};
+use crate::refusals::words::short;
 use crate::refusals::{place_of, unmatched as refused};
 use crate::segments::Segment;
 use crate::system::System;
@@ -166,22 +167,5 @@ pub(crate) fn name(system: &System, unknown: Segment) -> String {
         format!("der({text})")
     } else {
         text
-    }
-}
-
-pub(crate) fn plural(count: usize, word: &str) -> String {
-    if count == 1 {
-        format!("1 {word}")
-    } else {
-        format!("{count} {word}s")
-    }
-}
-
-pub(crate) fn short(name: &str) -> &str {
-    // `screw.q.left` is shown as `q.left`.
-    match name.rsplit_once('.') {
-        Some((before, "left" | "right")) => &name[before.rfind('.').map_or(0, |at| at + 1)..],
-        Some((_, last)) => last,
-        None => name,
     }
 }

@@ -1,6 +1,6 @@
 //! What is said of the equations of clocked parts.
 
-use super::quoted;
+use super::words::quoted;
 use hyde_diag::{Span, diagnostics};
 
 diagnostics! {

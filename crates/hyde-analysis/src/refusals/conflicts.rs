@@ -1,7 +1,7 @@
 //! What is said of equations that conflict, in the words of a drive.
 
-use super::{Part, a_few, parts_as_words, quoted, some_of};
-use crate::matching::plural;
+use super::Part;
+use super::words::{a_few, parts_as_words, plural, quoted, some_of};
 use hyde_diag::{Origin, Span, diagnostics};
 
 diagnostics! {

@@ -1,10 +1,22 @@
 //! What is said of states: of those that modes fix, that are chosen, differentiated, reinitialised or started twice.
 
-use super::{Part, Place, quoted};
-use crate::matching::plural;
-use crate::regularity::and;
-use crate::state_choices::NoState;
+use super::words::{and, plural, quoted};
+use super::{Part, Place};
 use hyde_diag::{Origin, Span, diagnostics};
+
+/// Why a variable is not a state.
+pub(crate) enum NoState {
+    /// Its value is constant.
+    Constant,
+    /// Nothing has its derivative.
+    NotDifferentiated,
+    /// This equation determines it from variables of which modes fix these.
+    OthersAreFixed(Span, Vec<String>),
+    /// This equation determines it from others that are chosen too.
+    OthersAreChosen(Span),
+    /// This equation determines it from others.
+    Follows(Span),
+}
 
 diagnostics! {
     fn constrained_in_mode(mode: &str, states: &[String], equation: Span, part: Option<Part>) = error Constrained {

@@ -1,7 +1,7 @@
 //! What is said of equations and unknowns that do not match.
 
-use super::{Part, Place, a_few, parts_as_words, quoted};
-use crate::matching::{plural, short};
+use super::words::{a_few, parts_as_words, plural, quoted, short};
+use super::{Part, Place};
 use hyde_diag::{Origin, Span, diagnostics};
 
 diagnostics! {

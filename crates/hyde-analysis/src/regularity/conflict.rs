@@ -3,6 +3,7 @@
 use super::pencil::Pencil;
 use super::words::{Conflict, floating, generic, held_twice, loose, parameter};
 use crate::matching::{self, Node, missing_boundary, sides, unbound_input};
+use crate::refusals::words::short;
 use crate::refusals::{place_of, unmatched as refused};
 use crate::system::System;
 use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
@@ -95,7 +96,7 @@ fn missing(system: &System, unknowns: &[VarId]) -> Diagnostic {
 
 fn too_few(system: &System, likely: VarId, unknowns: &[VarId]) -> Diagnostic {
     let variable = &system.flat.variables[likely];
-    let short = matching::short(&variable.name);
+    let short = short(&variable.name);
     let mut containing: Vec<Span> = Vec::new();
     for node in mentioning(system, likely).into_iter().take(2) {
         let origin = matching::origin(system, node);

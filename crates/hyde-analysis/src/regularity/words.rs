@@ -2,6 +2,7 @@
 
 use crate::matching::{self, Node, sides};
 use crate::refusals::conflicts as refused;
+use crate::refusals::words::short;
 use crate::system::System;
 use hyde_diag::{Diagnostic, MadeBy, Origin, Span};
 use hyde_ir::{Expr, VarId};
@@ -252,7 +253,7 @@ fn set_for_all_times(system: &System, conflict: &Conflict) -> Option<String> {
         }
     };
     let name = conflict.equations.iter().find_map(set)?;
-    Some(matching::short(name).to_owned())
+    Some(short(name).to_owned())
 }
 
 /// The continuous variables in equations, in the order of the model.
@@ -306,15 +307,6 @@ fn has_state(system: &System, var: VarId) -> bool {
 /// `wall.a` of `wall.a.phi`.
 fn connector(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(before, _)| before)
-}
-
-/// A list of names as words.
-pub(crate) fn and(names: &[String]) -> String {
-    match names {
-        [] => String::new(),
-        [only] => only.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
 }
 
 /// What a quantity is called.

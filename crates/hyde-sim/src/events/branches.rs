@@ -9,8 +9,8 @@
 //! so on, until a solution agrees with its own truths. So nothing that need not tip does.
 
 use super::Instant;
+use crate::active::is_active;
 use crate::failure::Failure;
-use crate::guards::is_active;
 use crate::moment::Moment;
 use hyde_program::{Function, RelationUse, Wrt};
 

@@ -1,6 +1,7 @@
 //! Rounds of events without end: what tells them, and what they are.
 
 use super::Instant;
+use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
 use crate::root_rates::root_rates;
 use hyde_program::{ReactionKind, RelationUse, Target};
@@ -56,7 +57,7 @@ impl Instant<'_, '_> {
             None => failure,
         };
         let at = self.now.at();
-        failure.with_values(self.state, at, condition)
+        with_values(failure, self.state, at, condition)
     }
 
     /// Rounds that do not end: strokes of one condition alone, or conditions that make each other true.
@@ -99,7 +100,7 @@ impl Instant<'_, '_> {
         }
         let at = self.now.at();
         for condition in &distinct {
-            failure = failure.with_values(self.state, at, condition);
+            failure = with_values(failure, self.state, at, condition);
         }
         failure
     }

@@ -11,11 +11,10 @@
 
 use super::reduce::Reduced;
 use super::rows::{Row, Rows};
-use crate::clocks::Schedule;
-use crate::consistent::Consistent;
-use crate::delays;
-use crate::integrator::Integrator;
+use super::run::Run;
+use crate::delays::Limits;
 use crate::meter::Meter;
+use crate::past;
 use crate::results::Results;
 use crate::sensitivity::{Cause, Sensitivities};
 use crate::setup::Setup;
@@ -32,18 +31,10 @@ pub(super) struct Followers<'a> {
     pub(super) sensitivities: Option<Sensitivities>,
 }
 
-/// The run that they follow.
-pub(super) struct Run<'r, 'a> {
-    pub(super) integrator: &'r mut Integrator<'a>,
-    pub(super) consistent: &'r mut Consistent,
-    pub(super) schedule: &'r Schedule,
-    pub(super) results: &'r mut Results,
-}
-
 /// What they keep of the left side of an instant.
 pub(super) struct Left {
     row: Row,
-    delayed: Option<delays::Limits>,
+    delayed: Option<Limits>,
     /// All outputs, for the energy ledger.
     metered: Option<Vec<f64>>,
 }
@@ -85,7 +76,7 @@ impl<'a> Followers<'a> {
             sensitivities.follow(run.integrator, to);
         }
         count_modes(run.integrator, run.results, to - from);
-        delays::record(run.integrator, from, to);
+        past::record(run.integrator, from, to);
     }
 
     /// The run stands at the end of a step; whether there is something to work on.
@@ -108,7 +99,7 @@ impl<'a> Followers<'a> {
 
     /// Takes in the left side of an instant.
     pub(super) fn left(&mut self, run: &mut Run<'_, 'a>, cause: &Cause) -> Left {
-        let delayed = delays::limits(run.integrator, Some(run.consistent));
+        let delayed = past::limits(run.integrator, Some(run.consistent));
         let row = self.row(run);
         if let Some(sensitivities) = &mut self.sensitivities {
             sensitivities.begin(run.integrator, run.consistent, cause);
@@ -154,7 +145,7 @@ impl<'a> Followers<'a> {
         if on_grid {
             self.rows.skip();
         }
-        delays::mark(run.integrator, run.consistent, left.delayed);
+        past::mark(run.integrator, run.consistent, left.delayed);
     }
 
     /// Takes in one side of an instant, as a point that signals are reduced with.

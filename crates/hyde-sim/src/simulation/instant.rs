@@ -2,10 +2,10 @@
 
 use super::Simulation;
 use crate::clocks::Ticked;
-use crate::delays;
 use crate::events::Instant;
 use crate::failure::Failure;
 use crate::moment::Moment;
+use crate::past;
 use crate::sensitivity::{Cause, Sensitivities, Slopes};
 use hyde_program::RelationUse;
 
@@ -34,7 +34,7 @@ impl Simulation<'_> {
         let (followers, mut run) = self.followers();
         let left = followers.left(&mut run, cause);
         let events = self.results.events.len();
-        let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
+        let arrived = past::arrive(&mut self.integrator, &mut self.consistent)?;
         let t = self.integrator.now.t;
         let entered = self.integrator.state_mut().inputs.enter(t);
         if entered {

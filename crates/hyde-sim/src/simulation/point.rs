@@ -6,6 +6,7 @@ use crate::initial;
 use crate::moment::Moment;
 use crate::operating_point::{OperatingPoint, PointModes, TakenMode};
 use crate::setup::same_instant;
+use crate::slide::Slide;
 use crate::start_modes::initial_pins;
 use hyde_program::{Function, Program, ReactionKind, Target};
 
@@ -39,8 +40,7 @@ impl Simulation<'_> {
             return Ok(Vec::new());
         }
         self.make_consistent()?;
-        let text =
-            |slide: &crate::sliding::Slide| self.program.relations[slide.surface].text.clone();
+        let text = |slide: &Slide| self.program.relations[slide.surface].text.clone();
         Ok(slides.iter().map(text).collect())
     }
 

@@ -1,6 +1,6 @@
 //! [`Reduced`]: what of a run becomes one number each, from each stretch of the solution and both sides of each instant.
 
-use super::followers::Run;
+use super::run::Run;
 use crate::reductions::Reductions;
 use crate::results;
 use crate::setup::Setup;

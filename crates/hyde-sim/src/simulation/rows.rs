@@ -1,6 +1,6 @@
 //! [`Rows`]: the rows of the results, on the grid asked for and on both sides of an event.
 
-use super::followers::Run;
+use super::run::Run;
 use crate::clocks::Schedule;
 use crate::moment::At;
 use crate::results::{Gradient, Results};

@@ -3,13 +3,13 @@
 
 use super::Simulation;
 use super::step::{Finished, Step, Target, Work};
-use crate::delays;
+use crate::active::is_active;
 use crate::failure::Failure;
-use crate::guards::{self, is_active};
+use crate::guards;
 use crate::moment::Moment;
+use crate::past;
 use crate::results::Event;
 use crate::sensitivity::Cause;
-use crate::session::Advance;
 use crate::setup::same_instant;
 use crate::zero::contradicts;
 use hyde_program::Function;
@@ -24,6 +24,17 @@ pub(super) struct Pieces {
     ahead: Option<(Step, Target)>,
     /// What waits at the caller's time.
     waits: Option<Work>,
+}
+
+/// How far a session goes beyond what is asked for, and where it stops before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Advance {
+    /// The solver may take steps that end behind the time asked for: nothing is going to be set there.
+    pub may_pass: bool,
+    /// Stop in front of an event: the caller asks for it by [`crate::Session::happen`].
+    pub stop_at_events: bool,
+    /// Stop at the end of each step of the solver before the time asked for.
+    pub stop_at_steps: bool,
 }
 
 /// How a piece ended.
@@ -127,11 +138,11 @@ impl Simulation<'_> {
     /// Sets the parameter vector at the caller's time, as an instant of its own.
     pub(crate) fn enter_parameters(&mut self, parameters: Vec<f64>) -> Result<(), Box<Failure>> {
         self.stop_here()?;
-        let left = delays::limits(&mut self.integrator, Some(&mut self.consistent));
+        let left = past::limits(&mut self.integrator, Some(&mut self.consistent));
         self.integrator.state_mut().p = parameters;
         self.be_consistent()?;
         self.iterate(&[], false)?;
-        delays::mark(&mut self.integrator, &mut self.consistent, left);
+        past::mark(&mut self.integrator, &mut self.consistent, left);
         self.restart()?;
         self.stand();
         Ok(())

@@ -7,7 +7,7 @@ use crate::delays::Delays;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::Moment;
 use crate::sensitivity::Cause;
-use crate::sliding::Slide;
+use crate::slide::Slide;
 use serde::{Deserialize, Serialize};
 
 /// Where a run is.

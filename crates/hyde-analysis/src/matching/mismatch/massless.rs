@@ -1,7 +1,7 @@
 //! Parts without mass between what is set-valued: a clutch that slips says what force it gives, not how its ends move, and
 //! two of them one behind the other say the same force twice, while what is between them moves as it likes.
 
-use super::super::{Node, origin, sides};
+use crate::matching::node::{Node, origin, sides};
 use crate::refusals::unmatched as refused;
 use crate::system::System;
 use hyde_diag::{Diagnostic, MadeBy, Span};

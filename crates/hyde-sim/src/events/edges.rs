@@ -1,6 +1,6 @@
 //! Edges: that a condition has become true since the round before, for as long as this round of the event iteration lasts.
 
-use crate::events::Instant;
+use super::Instant;
 use hyde_program::ReactionKind;
 
 impl Instant<'_, '_> {

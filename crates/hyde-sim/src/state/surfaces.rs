@@ -1,7 +1,7 @@
 //! Switching surfaces g(t, y) = 0: how far the run is from them, where they lead, and how it is put on them.
 
+use super::State;
 use crate::moment::{At, Moment};
-use crate::state::State;
 use hyde_program::{Function, Wrt};
 
 impl State<'_> {

@@ -2,27 +2,21 @@
 //!
 //! A relation that changes its truth, or a mode that is left, is at its surface g = 0. If the new side leads back to it and
 //! the old one led there, time cannot go on by switching: the run slides. It leaves to the side whose weight exceeds one, or
-//! when an event takes g away from zero. The equations while sliding are those of `sliding.rs`.
+//! when an event takes g away from zero. The equations while sliding are those of `state/sliding.rs`.
 
-use crate::events::Instant;
+use super::Instant;
+use crate::active::is_active;
+use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
-use crate::guards::is_active;
 use crate::results::EventKind;
-use crate::sliding::{ModePair, Slide};
+use crate::slide::{ModePair, ROUNDING, Slide};
 use crate::zero::{is_off_surface, located_s, of_surface};
 use hyde_program::{ReactionKind, RelationUse};
 
-/// Weights are rounding beyond 0 and 1 by this: a force exactly at its limit holds.
-const ROUNDING: f64 = 1e-12;
 /// Rates of the two sides that differ by less, over their size, are one: the switch does nothing to its own surface.
 const NO_JUMP: f64 = 1e-9;
 /// A mean of the two sides' rates that is off by more shows that a switch acts on the equations in no linear way.
 const NOT_LINEAR: f64 = 1e-6;
-
-/// How far a weight is from either end, positive inside.
-pub(crate) fn margins(weight: f64) -> [f64; 2] {
-    [weight + ROUNDING, 1.0 - weight + ROUNDING]
-}
 
 /// The rates of the states on one side of a switch, and that of its root function with the size of its parts.
 struct Flow {
@@ -434,7 +428,7 @@ impl Instant<'_, '_> {
             });
         let at = self.now.at();
         causes.iter().fold(failure, |failure, cause| {
-            failure.with_values(self.state, at, cause)
+            with_values(failure, self.state, at, cause)
         })
     }
 }

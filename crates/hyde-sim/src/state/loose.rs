@@ -9,8 +9,8 @@
 //! root function has left what the tolerance of the run knows far behind, such a relation is evaluated with the equations, as
 //! below `noEvent`.
 
+use super::State;
 use crate::moment::At;
-use crate::state::State;
 use crate::zero;
 use hyde_program::{Function, Point, RelationUse, Workspace};
 
