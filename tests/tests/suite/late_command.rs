@@ -156,7 +156,7 @@ fn a_delay_that_the_model_lacks_is_found_and_the_repair_mends_it() {
 
 #[test]
 fn a_column_that_is_recorded_late_is_not_blamed_on_the_controller() {
-    let report = diagnosed(AS_IT_IS, 0, 1);
-    assert_eq!(timing(&report), (-0.001, true));
-    says(&report, "the column of F was recorded 1 ms too late");
+    let report = diagnosed(AS_IT_IS, 0, 2);
+    assert_eq!(timing(&report), (-0.002, true));
+    says(&report, "the column of F was recorded 2 ms too late");
 }
