@@ -105,14 +105,14 @@ fn timing(
         if command > 0.0 {
             error / command
         } else {
-            f64::NAN
+            f64::INFINITY
         }
     };
     let (step_s, clock, (period_s, delay_s)) = clock?;
     let middle = sums.len() / 2;
     let best = (0..sums.len()).min_by(|&a, &b| part(a).total_cmp(&part(b)))?;
     let thresholds = ground.thresholds;
-    if !(part(best) <= thresholds.a_part) {
+    if part(best) > thresholds.a_part {
         return None;
     }
     let clear = part(best) <= (1.0 - thresholds.mostly) * part(middle);
