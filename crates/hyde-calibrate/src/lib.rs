@@ -35,6 +35,7 @@ pub use diagnosis::{
     FoundCurve, FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law,
     LawVariable, Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen, Site,
     Summand, TABLE, Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,
+    moved_columns,
 };
 pub use fit::{
     Cause, Fit, FittedParameter, Fold, Identifiability, Information, Joint, LIMIT, Part, Problem,

@@ -158,5 +158,12 @@ fn a_delay_that_the_model_lacks_is_found_and_the_repair_mends_it() {
 fn a_column_that_is_recorded_late_is_not_blamed_on_the_controller() {
     let report = diagnosed(AS_IT_IS, 0, 2);
     assert_eq!(timing(&report), (-0.002, true));
-    says(&report, "the column of F was recorded 2 ms too late");
+    assert_eq!(
+        report["sentence"],
+        "no missing effect detected; the column of F was recorded 2 ms too late"
+    );
+    says(
+        &report,
+        "the diagnosis has moved this column in all records",
+    );
 }

@@ -13,7 +13,8 @@
 
 use super::answer::Diagnosis;
 use super::inquiry::Inquiry;
-use super::stage::Ground;
+use super::thresholds::Thresholds;
+use crate::fit::Problem;
 use crate::observer::{Innovations, Track, Vectors, When};
 use crate::plant::Unsupported;
 use crate::records::Recording;
@@ -45,8 +46,16 @@ pub struct CommandTiming {
     pub of_column: bool,
 }
 
+impl CommandTiming {
+    /// Moves the column of the command to where it acted, in a record that the same program reads.
+    pub fn mend(&self, program: &Program, recording: &mut Recording) {
+        let rows = (-self.late_s / recording.step_s).round() as i64;
+        recording.move_column(program.experiment.replayed[self.replayed].column, rows);
+    }
+}
+
 impl Diagnosis {
-    /// Every replayed command whose controller ticks with the rows of all records and explains it for the most part.
+    /// When the model that was found puts out its commands; see [`command_timings`].
     ///
     /// # Errors
     /// The model has no fixed-step form.
@@ -54,30 +63,63 @@ impl Diagnosis {
         &self,
         inquiry: &Inquiry<'_>,
     ) -> Result<Vec<CommandTiming>, Unsupported> {
-        let (ground, stage) = (self.ground(inquiry), self.stage());
-        if self.program.experiment.replayed.is_empty() || !self.program.foreign.is_empty() {
-            return Ok(Vec::new());
-        }
-        let set = ground.set_in(&self.program, &stage.values());
-        let tracks = stage.tracks(&ground)?;
-        let numbers = 0..self.program.experiment.replayed.len();
-        let each =
-            numbers.filter_map(|number| timing(&self.program, &ground, &tracks, &set, number));
-        each.collect()
+        let ground = self.ground(inquiry);
+        let set = ground.set_in(&self.program, &self.kept);
+        let problem = ground.problem(&self.program, &self.varied, &set, None);
+        command_timings(&problem, &self.after.values, ground.thresholds)
     }
 }
 
+/// The columns that were recorded at other times than they acted, of the model as it is declared: calibrated where a
+/// command is put out at another time than recorded.
+///
+/// # Errors
+/// The model has no fixed-step form.
+pub fn moved_columns(
+    problem: &Problem<'_>,
+    thresholds: &Thresholds,
+) -> Result<Vec<CommandTiming>, Unsupported> {
+    let nominal: Vec<f64> = problem.varied.iter().map(|own| own.nominal).collect();
+    let timings = command_timings(problem, &nominal, thresholds)?;
+    if timings.iter().all(|own| own.late_s == 0.0) {
+        return Ok(Vec::new());
+    }
+    let values = problem.solve(&nominal)?.values;
+    let mut timings = command_timings(problem, &values, thresholds)?;
+    timings.retain(|own| own.of_column);
+    Ok(timings)
+}
+
+/// Every replayed command whose controller ticks with the rows of all records and explains it for the most part, parameters
+/// at some values.
+fn command_timings(
+    problem: &Problem<'_>,
+    values: &[f64],
+    thresholds: &Thresholds,
+) -> Result<Vec<CommandTiming>, Unsupported> {
+    let program = problem.program;
+    if program.experiment.replayed.is_empty() || !program.foreign.is_empty() {
+        return Ok(Vec::new());
+    }
+    let set = problem.settings(values);
+    let tracks = Track::all(program, problem.recordings, problem.observer, &set)?;
+    let numbers = 0..program.experiment.replayed.len();
+    let each = numbers.filter_map(|number| timing(problem, thresholds, &tracks, &set, number));
+    each.collect()
+}
+
 fn timing(
-    program: &Program,
-    ground: &Ground<'_>,
+    problem: &Problem<'_>,
+    thresholds: &Thresholds,
     tracks: &[Track<'_>],
     set: &[(usize, f64)],
     number: usize,
 ) -> Option<Result<CommandTiming, Unsupported>> {
+    let program = problem.program;
     let replayed = &program.experiment.replayed[number];
     let mut sums = Vec::new();
     let mut clock = None;
-    for (recording, track) in ground.recordings.iter().zip(tracks) {
+    for (recording, track) in problem.recordings.iter().zip(tracks) {
         let p = recording.parameters(program, set);
         let controller = Controller::of(program, recording, &p, replayed.output)?;
         let computed = controller.along(track, recording, &p);
@@ -111,7 +153,6 @@ fn timing(
     let (step_s, clock, (period_s, delay_s)) = clock?;
     let middle = sums.len() / 2;
     let best = (0..sums.len()).min_by(|&a, &b| part(a).total_cmp(&part(b)))?;
-    let thresholds = ground.thresholds;
     if part(best) > thresholds.a_part {
         return None;
     }
@@ -121,7 +162,7 @@ fn timing(
     let of_column = if rows == 0 {
         Ok(false)
     } else {
-        follows_moved(program, ground, set, replayed.column, -rows)
+        follows_moved(problem, set, replayed.column, -rows)
     };
     Some(of_column.map(|of_column| CommandTiming {
         replayed: number,
@@ -164,23 +205,19 @@ fn moved(recorded: &[f64], computed: &[f64], first_row: usize, most: i64) -> Vec
 
 /// Whether the axis follows a column better that is moved by some rows.
 fn follows_moved(
-    program: &Program,
-    ground: &Ground<'_>,
+    problem: &Problem<'_>,
     set: &[(usize, f64)],
     column: usize,
     rows: i64,
 ) -> Result<bool, Unsupported> {
     let squares = |recording: &Recording| -> Result<f64, Unsupported> {
-        let all = Innovations::of(program, recording, ground.observer, set)?;
+        let all = Innovations::of(problem.program, recording, problem.observer, set)?;
         Ok(all.channels.iter().flatten().map(|e| e * e).sum())
     };
     let mut gained = 0.0;
-    for recording in ground.recordings {
+    for recording in problem.recordings {
         let mut other = recording.clone();
-        let own = &recording.columns[column];
-        let last = own.len().saturating_sub(1) as i64;
-        let at = |row: usize| own[usize::try_from((row as i64 + rows).clamp(0, last)).unwrap_or(0)];
-        other.columns[column] = (0..own.len()).map(at).collect();
+        other.move_column(column, rows);
         gained += squares(recording)? - squares(&other)?;
     }
     Ok(gained > 0.0)

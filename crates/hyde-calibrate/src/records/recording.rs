@@ -190,6 +190,14 @@ impl Recording {
         (end_s > stop_s + self.step_s).then_some((stop_s, end_s))
     }
 
+    /// Gives a driving column in each row the value that it has some rows later; ends go on.
+    pub(crate) fn move_column(&mut self, column: usize, rows: i64) {
+        let own = &self.columns[column];
+        let last = own.len().saturating_sub(1) as i64;
+        let at = |row: usize| own[usize::try_from((row as i64 + rows).clamp(0, last)).unwrap_or(0)];
+        self.columns[column] = (0..own.len()).map(at).collect();
+    }
+
     /// The whole parameter vector with some values set (position and value).
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
         parameters(program, &self.record_values, set)

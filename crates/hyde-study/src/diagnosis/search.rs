@@ -3,7 +3,8 @@
 use super::{Diagnosed, agreed};
 use crate::{Calibration, unknown, unobservable};
 use hyde_calibrate::{
-    Cause, Hypothesis, Inquiry, Knob, Site, Solution, Thresholds, Unsupported, fitted_parameters,
+    Cause, CommandTiming, Hypothesis, Inquiry, Knob, Problem, Site, Solution, Thresholds,
+    Unsupported, fitted_parameters, moved_columns,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Laws};
 use hyde_diag::Diagnostic;
@@ -51,6 +52,7 @@ fn searched<T>(
         .filter(|candidate| plan.selects(candidate))
         .collect();
     let mut hypotheses: Vec<Hypothesis> = candidates.iter().map(hypothesis).collect();
+    let moved = mend_columns(calibration, thresholds)?;
     let (found, agreed, curves, timings) = {
         let project = &calibration.project;
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
@@ -77,7 +79,9 @@ fn searched<T>(
         let count = if curves { found.findings.len() } else { 0 };
         let curves = (0..count).map(|number| found.curve(&inquiry, number));
         let curves: Vec<_> = curves.collect();
-        let timings = found.command_timings(&inquiry)?;
+        let mut timings = found.command_timings(&inquiry)?;
+        timings.retain(|own| moved.iter().all(|moved| moved.replayed != own.replayed));
+        timings.extend(moved);
         (found, agreed, curves, timings)
     };
     if let Some(own) = &found.observer {
@@ -103,6 +107,30 @@ fn searched<T>(
         timings,
         ..told
     })))
+}
+
+/// Moves columns of commands that were recorded at other times than they acted, in all records: everything that follows would
+/// stand in for the time between. Gives what was moved.
+fn mend_columns(
+    calibration: &mut Calibration,
+    thresholds: &Thresholds,
+) -> Result<Vec<CommandTiming>, Unsupported> {
+    let program = &calibration.compiled.program;
+    let problem = Problem {
+        program,
+        recordings: &calibration.fitted,
+        observer: &calibration.observer,
+        varied: &calibration.varied,
+        set: &calibration.set,
+        fold: None,
+        reached: None,
+    };
+    let moved = moved_columns(&problem, thresholds)?;
+    let records = calibration.fitted.iter_mut();
+    for recording in records.chain(&mut calibration.holdout) {
+        moved.iter().for_each(|own| own.mend(program, recording));
+    }
+    Ok(moved)
 }
 
 /// Why the calibrated model does not follow the records, if it does not.

@@ -64,7 +64,9 @@ fn repair(told: &Diagnosed<'_>, own: &CommandTiming) -> String {
     if own.of_column {
         let (late, by) = (own.late_s < 0.0, ms(own.late_s));
         let sign = if late { "subtract" } else { "add" };
-        return format!("{sign} {by} in the times of that column");
+        return format!(
+            "the diagnosis has moved this column in all records; {sign} {by} in its times"
+        );
     }
     if let Some(Edit {
         file,
