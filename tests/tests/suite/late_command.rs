@@ -167,3 +167,11 @@ fn a_column_that_is_recorded_late_is_not_blamed_on_the_controller() {
         "the diagnosis has moved this column in all records",
     );
 }
+
+#[test]
+fn a_replay_of_more_than_a_column_is_allowed_and_not_compared() {
+    let mean = ("replay F = file.F", "replay F = 0.5*(file.F + file.F)");
+    let report = diagnosed(mean, 0, 0);
+    assert_eq!(report["sentence"], "no missing effect detected");
+    assert_eq!(report["command_timings"].as_array().unwrap().len(), 0);
+}

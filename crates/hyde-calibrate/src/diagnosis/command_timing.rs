@@ -369,15 +369,8 @@ fn needed(program: &Program, output: usize, p: &[f64]) -> Vec<usize> {
             | Wrt::Time => None,
         })
         .collect();
-    let (y, z, u) = start(program, p);
-    let at = Point {
-        t: 0.0,
-        y: &y,
-        yp: &vec![0.0; y.len()],
-        z: &z,
-        u: &u,
-        p,
-    };
+    let start = Start::of(program, p);
+    let at = start.point(p);
     let mut workspace = Workspace::new(program.n_work);
     let mut clocks: Vec<usize> = Vec::new();
     while let Some(place) = read.pop() {
@@ -408,15 +401,8 @@ fn needed(program: &Program, output: usize, p: &[f64]) -> Vec<usize> {
 
 /// Channels that measure one unknown alone, as it is: channel, output, position, derivative.
 fn measured(program: &Program, p: &[f64]) -> Vec<(usize, usize, usize, f64)> {
-    let (y, z, u) = start(program, p);
-    let at = Point {
-        t: 0.0,
-        y: &y,
-        yp: &vec![0.0; y.len()],
-        z: &z,
-        u: &u,
-        p,
-    };
+    let start = Start::of(program, p);
+    let at = start.point(p);
     let entries = program.partials(Function::Outputs);
     let mut values = vec![0.0; entries.len()];
     let mut workspace = Workspace::new(program.n_work);
@@ -447,13 +433,34 @@ fn measured(program: &Program, p: &[f64]) -> Vec<(usize, usize, usize, f64)> {
         .collect()
 }
 
-/// The start values of a program, with nothing that drives it.
-fn start(program: &Program, p: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
-    program.kernels.start(p, &mut y, &mut z);
-    (
-        y,
-        z,
-        vec![0.0; 2 * program.columns.len() + program.delays.len()],
-    )
+/// The start values of a program, with nothing that drives it: where structure is asked for.
+struct Start {
+    y: Vec<f64>,
+    z: Vec<f64>,
+    /// Zeros, for rates and for what drives it.
+    nothing: Vec<f64>,
+}
+
+impl Start {
+    fn of(program: &Program, p: &[f64]) -> Self {
+        let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
+        program.kernels.start(p, &mut y, &mut z);
+        let driving = 2 * program.columns.len() + program.delays.len();
+        Self {
+            nothing: vec![0.0; driving.max(y.len())],
+            y,
+            z,
+        }
+    }
+
+    fn point<'a>(&'a self, p: &'a [f64]) -> Point<'a> {
+        Point {
+            t: 0.0,
+            y: &self.y,
+            yp: &self.nothing[..self.y.len()],
+            z: &self.z,
+            u: &self.nothing,
+            p,
+        }
+    }
 }

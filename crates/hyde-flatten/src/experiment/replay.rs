@@ -47,6 +47,7 @@ pub(crate) fn find_replays(model: &mut Model<'_, '_>, root: InstanceId) {
                     root,
                     used: false,
                     value: None,
+                    column: None,
                 });
             }
         }
@@ -72,6 +73,11 @@ pub(crate) fn replayed(model: &mut Model<'_, '_>, var: VarId, value: Typed) -> T
     let declared = model.typed(value.id, model.dim(var), drive.target.span);
     model.agree(&declared, &column, "the variable and its record are", root);
     noise_of_column(model, drive, (&declared, column.id), root);
+    if let Ir::Var(read, _) = model.flat.exprs[column.id]
+        && let VariableKind::Column(column, _) = model.flat.variables[read].kind
+    {
+        model.replays[number].column = Some(column);
+    }
     if is_held(&model.flat, var, value.id) {
         note_ticks_between_rows(model, var, value.id, column.id);
         column.id = with_held_columns(model, column.id);
@@ -203,21 +209,15 @@ pub(super) fn record_replays(model: &mut Model<'_, '_>) {
 /// out is to agree with it along the measured motion.
 pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
     for number in 0..model.replays.len() {
-        let Replay {
-            drive,
-            var,
-            root,
-            value,
-            ..
-        } = model.replays[number];
-        let Some(value) = value else { continue };
-        let put_out = model.flat.variables[var].kind == VariableKind::Continuous;
-        let mut preparation = Vec::new();
-        let column = recorded(model, &drive.value, root, false, &mut preparation);
-        let (true, true, Some((column, _))) = (put_out, preparation.is_empty(), column) else {
+        let replay = model.replays[number];
+        let Replay { drive, var, .. } = replay;
+        let (Some(value), Some(column)) = (replay.value, replay.column) else {
             continue;
         };
-        let origin = model.tree.origin(root, drive.target.span);
+        if model.flat.variables[var].kind != VariableKind::Continuous {
+            continue;
+        }
+        let origin = model.tree.origin(replay.root, drive.target.span);
         model.flat.experiment.replayed.push(Replayed {
             name: drive.target.dotted(),
             column,
