@@ -55,7 +55,7 @@ impl CommandTiming {
 }
 
 impl Diagnosis {
-    /// When the model that was found puts out its commands; see [`command_timings`].
+    /// When the model that was found puts out its commands: those whose controllers tick with the rows of all records.
     ///
     /// # Errors
     /// The model has no fixed-step form.
