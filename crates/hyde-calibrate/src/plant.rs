@@ -33,7 +33,7 @@ mod stepping;
 mod unsupported;
 
 pub(crate) use configuration::{
-    Configuration, Places, arranged, inverse, partials, uneven, v_column, x_column,
+    Configuration, Places, arranged, partials, uneven, v_column, x_column,
 };
 pub(crate) use driven::Plant;
 pub(crate) use gains::Gains;

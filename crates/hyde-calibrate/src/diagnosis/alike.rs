@@ -47,7 +47,7 @@ struct Added {
 /// States of a record, mixed.
 fn looks(track: &Track<'_>, program: &Program) -> Looks {
     let rows = track.route.rows.len().max(1);
-    let places = &track.places.states;
+    let places = &track.route.places.states;
     let p = vec![0.0; program.n_parameters];
     let mut room = Vectors::default();
     let mut states = vec![Vec::new(); LOOKS];

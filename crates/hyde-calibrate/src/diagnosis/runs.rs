@@ -60,8 +60,8 @@ impl Runs<'_> {
             let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
             let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
             let p = recording.parameters(self.program, &set);
-            let own = self.on_track(number, &set, |track| {
-                along(track, self.program, recording, &p, &directions, each).ok()?;
+            let own = self.on_track(number, (&set, &p), |track| {
+                along(track, self.program, recording, &p, &directions, each);
                 Some(track.route.innovations.clone())
             });
             innovations.push(own?);
@@ -78,8 +78,8 @@ impl Runs<'_> {
         for (number, recording) in self.ground.recordings.iter().enumerate() {
             let directions = self.directions(hypothesis, recording, &[shapes.to_vec()]);
             let p = recording.parameters(self.program, &set);
-            let own = self.on_track(number, &set, |track| {
-                changes(track, self.program, recording, &p, &directions).ok()
+            let own = self.on_track(number, (&set, &p), |track| {
+                Some(changes(track, self.program, recording, &p, &directions))
             });
             for (column, change) in columns.iter_mut().zip(own?.column_iter()) {
                 column.extend(change.iter());
@@ -93,11 +93,11 @@ impl Runs<'_> {
     fn on_track<T>(
         &self,
         number: usize,
-        set: &[(usize, f64)],
+        (set, p): (&[(usize, f64)], &[f64]),
         make: impl FnOnce(&Track<'_>) -> Option<T>,
     ) -> Option<T> {
         let (known, recording) = (&self.tracks[number], &self.ground.recordings[number]);
-        if known.serves(self.program) {
+        if known.serves(self.program, p) {
             return make(known);
         }
         let own = match known.carrying(self.program, recording, set) {

@@ -29,17 +29,17 @@ pub(crate) fn changes_if_late(
     p: &[f64],
 ) -> Result<DMatrix<f64>, Unsupported> {
     let route = &track.route;
-    let (observer, states) = (&route.observer, track.places.states.len());
+    let (observer, states) = (&route.observer, route.places.states.len());
     let (channels, columns) = (recording.channels.len(), program.columns.len());
     let counted = recording.rows() - recording.first_row;
     let mut found = DMatrix::zeros(counted * channels, columns);
-    let mut known = Known::new(track, program, recording, p, &[]);
+    let mut known = Known::new(track, recording, &[]);
     let mut by_column: Vec<Option<[DMatrix<f64>; 2]>> = vec![None; route.configurations.len()];
     let (mut workspace, mut room) = (Workspace::new(program.n_work), Vectors::default());
     let mut errors = DMatrix::<f64>::zeros(states, columns);
     for (row, passed) in route.rows.iter().enumerate() {
         let [before, after] = passed.modes;
-        let seen = known.modes(row, When::Before, before)?;
+        let seen = known.modes(row, When::Before, before);
         let change = -(&known.modes[seen].outputs * &errors);
         errors += &known.modes[seen].gain * &change;
         passed
@@ -57,7 +57,7 @@ pub(crate) fn changes_if_late(
         let own = &route.configurations[after];
         let at = track.point(row, When::After, p, &mut room);
         let [linear, held] = by_column[after]
-            .get_or_insert_with(|| rates(program, &track.places, own, at, &mut workspace));
+            .get_or_insert_with(|| rates(program, &route.places, own, at, &mut workspace));
         let step = &own.steps[0];
         let mut growing = DMatrix::zeros(states, columns);
         for (number, column) in recording.columns.iter().enumerate() {

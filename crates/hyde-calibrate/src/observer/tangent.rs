@@ -8,17 +8,16 @@
 //! column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
 //! right to first order, for its force does not jump where it begins and ends to stick, and what has stuck in between forgets
 //! its speed; of contacts it is a part. Modes that begin within a row act from there on, and what bends has the derivatives
-//! of where the plant is ([`splitting`]).
+//! of where the plant is (`track/splitting.rs`).
 
 mod known;
 mod own;
-mod splitting;
 
 use super::gain::Observer;
 use super::over_record::When;
-use super::track::{Track, Vectors};
+use super::track::{Passing, Track, Vectors};
 use crate::linear::set_product;
-use crate::plant::{Leg, Unsupported, length, size_of};
+use crate::plant::{Leg, length, size_of};
 use crate::records::Recording;
 use hyde_program::Program;
 pub(crate) use known::{Known, Modes};
@@ -46,7 +45,7 @@ pub(crate) fn changes(
     recording: &Recording,
     p: &[f64],
     directions: &[Direction],
-) -> Result<DMatrix<f64>, Unsupported> {
+) -> DMatrix<f64> {
     let channels = recording.channels.len();
     let rows = recording.rows() - recording.first_row;
     let mut change = DMatrix::zeros(rows * channels, directions.len());
@@ -57,8 +56,8 @@ pub(crate) fn changes(
             }
         }
     };
-    along(track, program, recording, p, directions, keep)?;
-    Ok(change)
+    along(track, program, recording, p, directions, keep);
+    change
 }
 
 /// The same, row by row: `each` gets the number of a row that counts, and how its whitened innovations change, a row a
@@ -70,13 +69,13 @@ pub(crate) fn along(
     p: &[f64],
     directions: &[Direction],
     mut each: impl FnMut(usize, DMatrixView<'_, f64>),
-) -> Result<(), Unsupported> {
+) {
     let route = &track.route;
     let observer = &route.observer;
-    let (states, channels) = (track.places.states.len(), recording.channels.len());
+    let (states, channels) = (route.places.states.len(), recording.channels.len());
     let count = directions.len();
     let mut own = Own::new(program, p, directions);
-    let mut known = Known::new(track, program, recording, p, &own.touched);
+    let mut known = Known::new(track, recording, &own.touched);
     let touched = own.touched.len();
     // A column a direction: errors of the states, forces at the start of a row and at its end, what channels show of it.
     let mut before = DMatrix::<f64>::zeros(states + 2 * touched + channels, count);
@@ -94,14 +93,14 @@ pub(crate) fn along(
     let (mut left, mut bend) = (0, None);
     for (row, passed) in route.rows.iter().enumerate() {
         let [before_it, next] = passed.modes;
-        let seen = known.modes(row, When::Before, before_it)?;
+        let seen = known.modes(row, When::Before, before_it);
         if own.shown {
             let at = track.point(row, When::Before, p, &mut room);
             own.seen(at, directions, &mut by_output);
         }
         let at_end = track.point(row, When::After, p, &mut room);
         own.forces(at_end, directions, &mut then);
-        let bend_next = known.bend(next, at_end);
+        let bend_next = route.bend(next, Passing::Row(row, When::After));
         // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
         let same = next == before_it;
         let legs = track.legs(row);
@@ -111,44 +110,44 @@ pub(crate) fn along(
             event: None,
         }];
         let legs = if within { legs } else { &one };
-        let bends = at.is_some() && known.splitting(left).is_some();
+        let bends = at.is_some() && route.splitting(left).is_some();
         let apart = at.is_some() && (within || bends && count < WIDE);
         let end = if same { &then } else { &now };
         if apart {
             // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
             // So do forces, which jump from one mode to the next, and grow evenly in each.
-            let mut configuration = left;
+            let (mut configuration, mut number) = (left, passed.legs.start);
             for mode in legs.split_inclusive(|leg| leg.event.is_some()) {
                 let event = mode.last().and_then(|leg| leg.event.as_ref());
-                known.kick(configuration, &bend, length(mode), &now, &mut before);
+                known.kick(configuration, bend, length(mode), &now, &mut before);
+                number += mode.len();
                 if let Some(event) = event {
                     let at = track.within(row, &event.before, p, &mut room);
                     own.forces(at, directions, &mut reached);
-                    bend = known.bend(configuration, at);
+                    bend = route.bend(configuration, Passing::Leg(number - 1, When::Before));
                 } else {
                     reached.copy_from(if same { &then } else { &now });
-                    bend.clone_from(&bend_next);
-                    if next != configuration {
-                        let at = track.point(row, When::Before, p, &mut room);
-                        bend = known.bend(configuration, at);
-                    }
+                    bend = match next == configuration {
+                        true => bend_next,
+                        false => route.bend(configuration, Passing::Row(row, When::Before)),
+                    };
                 }
                 for (number, leg) in mode.iter().enumerate() {
                     put(&mut before, states, &now);
                     let part = size_of(leg.level) as f64 / length(&mode[number..]) as f64;
                     now.zip_apply(&reached, |now, end| *now += part * (end - *now));
                     put(&mut before, states + touched, &now);
-                    let matrix = known.leg(configuration, leg.level)?;
+                    let matrix = known.leg(configuration, leg.level);
                     let errors = matrix * before.rows(0, states + 2 * touched);
                     put(&mut before, 0, &errors);
                 }
-                known.kick(configuration, &bend, length(mode), &reached, &mut before);
+                known.kick(configuration, bend, length(mode), &reached, &mut before);
                 if let Some(event) = event {
                     fix(&event.fixed, &mut before);
                     let at = track.within(row, &event.after, p, &mut room);
                     own.forces(at, directions, &mut now);
                     configuration = event.configuration;
-                    bend = known.bend(configuration, at);
+                    bend = route.bend(configuration, Passing::Leg(number - 1, When::After));
                 }
             }
         } else {
@@ -158,12 +157,11 @@ pub(crate) fn along(
         put(&mut before, states + 2 * touched, &by_output);
         let matrix = if bends && !apart {
             // One product for all directions, of what bends at both ends of the row and the step between.
-            let turned = (next != left).then(|| {
-                let at = track.point(row, When::Before, p, &mut room);
-                known.bend(left, at)
-            });
-            let reached = turned.as_ref().unwrap_or(&bend_next);
-            known.bent(left, [&bend, reached], &mut errors)?;
+            let reached = match next == left {
+                true => bend_next,
+                false => route.bend(left, Passing::Row(row, When::Before)),
+            };
+            known.bent(left, [bend, reached], &mut errors);
             correct(&errors, &known.modes[seen], observer, &mut bent);
             &bent
         } else {
@@ -185,10 +183,9 @@ pub(crate) fn along(
         fix(&passed.fixed, &mut after);
         std::mem::swap(&mut before, &mut after);
         std::mem::swap(&mut now, &mut then);
-        at = Some(known.modes(row, When::After, next)?);
+        at = Some(known.modes(row, When::After, next));
         (left, bend) = (next, bend_next);
     }
-    Ok(())
 }
 
 /// Copies rows to where one begins.

@@ -4,34 +4,44 @@
 //! equations are evaluated where the model without it has been ([`Track::serves`]), and where they are linear its own
 //! unknowns are carried along ([`Track::carrying`]).
 
+mod bends;
 mod carried;
 mod equations;
+mod splitting;
 
 use super::gain::Observer;
 use super::innovations::Innovations;
 use super::over_record::{When, run_while};
-use crate::plant::{Configuration, Instant, Leg, Places, Plant, Unsupported, inverse};
+use crate::plant::{Configuration, Instant, Leg, Places, Plant, Unsupported, arranged, partials};
 use crate::records::Recording;
+use bends::Bends;
+pub(crate) use bends::Passing;
 use carried::Carried;
 pub(crate) use carried::Vectors;
-use hyde_program::{Point, Program, Workspace};
+use hyde_program::{Point, Program, Workspace, Wrt};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+pub(crate) use splitting::{Bend, Forcing, acting};
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
+
+/// How far from each other derivatives may be that are the same number, of the largest of their equation.
+const SAME: f64 = 1e-9;
 
 /// A run of an observer over a record, in the vectors of a program.
 pub(crate) struct Track<'p> {
     pub(crate) route: Arc<Route<'p>>,
-    /// The states and algebraic variables of the route.
-    pub(crate) places: Places,
     /// If this is another program than the route's: what it has beside.
     carried: Option<Carried>,
 }
 
 /// What a run of an observer has met, whatever else is carried along it.
 pub(crate) struct Route<'p> {
-    program: &'p Program,
+    pub(crate) program: &'p Program,
+    /// Its parameters.
+    pub(crate) p: Vec<f64>,
+    /// Its states and algebraic variables.
+    pub(crate) places: Places,
     /// The time of a row, s.
     pub(crate) step_s: f64,
     pub(crate) innovations: Innovations,
@@ -46,6 +56,7 @@ pub(crate) struct Route<'p> {
     /// Of each row: unknowns, their rates and what drives the axis, before the correction and after it.
     values: Vec<f64>,
     memories: Vec<Vec<f64>>,
+    bends: Bends,
 }
 
 /// A row: everything before its correction, and after it.
@@ -55,7 +66,7 @@ pub(crate) struct Passed {
     pub(crate) modes: [usize; 2],
     memory: [usize; 2],
     /// The steps that led here.
-    legs: Range<usize>,
+    pub(crate) legs: Range<usize>,
     /// Numbers of the states that modes fix.
     pub(crate) fixed: Vec<usize>,
 }
@@ -108,6 +119,9 @@ impl<'p> Track<'p> {
         let route = Route {
             same_modes,
             program,
+            p: std::mem::take(&mut plant.p),
+            places: plant.places,
+            bends: Bends::new(configurations.len(), rows.len(), legs.len()),
             step_s: recording.step_s,
             innovations,
             observer,
@@ -119,7 +133,6 @@ impl<'p> Track<'p> {
         };
         Ok(Self {
             route: Arc::new(route),
-            places: plant.places,
             carried: None,
         })
     }
@@ -136,9 +149,13 @@ impl<'p> Track<'p> {
             .collect()
     }
 
-    /// Whether another program has the same unknowns, modes and memory, so that it can be evaluated here.
-    pub(crate) fn serves(&self, other: &Program) -> bool {
-        self.moves_as(other) && names(self.route.program) == names(other)
+    /// Whether another program has the same unknowns, equations, modes and memory with some parameters, so that it can be
+    /// evaluated here.
+    pub(crate) fn serves(&self, other: &Program, p: &[f64]) -> bool {
+        let positions: Vec<usize> = (0..other.n_unknowns).collect();
+        self.moves_as(other)
+            && names(self.route.program) == names(other)
+            && self.has_equations_of(other, p, &positions, &positions)
     }
 
     /// Whether another program has the same modes and memory.
@@ -191,41 +208,72 @@ impl<'p> Track<'p> {
         &self.route.legs[self.route.rows[row].legs.clone()]
     }
 
-    /// What a unit of the residuals of this program, or of one that this track serves, makes of rates and algebraic
-    /// variables, in a combination of modes: the inverse of dF/dv.
-    pub(crate) fn inverse(
-        &self,
-        program: &Program,
-        configuration: usize,
-        p: &[f64],
-        workspace: &mut Workspace,
-    ) -> Option<DMatrix<f64>> {
-        if self.carried.is_none() && std::ptr::eq(program, self.route.program) {
-            return Some(self.route.configurations[configuration].inverse.clone());
+    /// The number in the route's program of an equation of the program that is evaluated here; `None` of what is carried
+    /// along.
+    pub(crate) fn equation(&self, number: usize) -> Option<usize> {
+        match &self.carried {
+            None => Some(number),
+            Some(carried) => carried.equations.iter().position(|&own| own == number),
         }
-        let mut room = Vectors::default();
-        let at = self.made(configuration, p, &mut room);
-        inverse(program, &self.places, at, workspace)
     }
 
-    /// Where a combination of modes is linear, with some parameters.
-    pub(crate) fn made<'a>(
-        &'a self,
-        configuration: usize,
-        p: &'a [f64],
-        room: &'a mut Vectors,
-    ) -> Point<'a> {
-        let at = self.route.configurations[configuration].made.point(p);
-        match &self.carried {
-            None => at,
-            Some(carried) => carried.at_rest(at, room),
-        }
+    /// Whether some equations of another program, with some parameters, are those of the route, one by one, by their
+    /// derivatives where it is linear; its unknowns have these positions.
+    fn has_equations_of(
+        &self,
+        other: &Program,
+        p: &[f64],
+        equations: &[usize],
+        positions: &[usize],
+    ) -> bool {
+        let route = &self.route;
+        let Some(first) = route.configurations.first() else {
+            return false;
+        };
+        let mut there = Vectors::default();
+        there.reach(other.n_unknowns);
+        let at = first.made.point(p);
+        there.take(positions, at);
+        let own = derivatives(route.program, first.made.point(&route.p));
+        let others = derivatives(other, there.in_place(at));
+        own.iter().zip(&others).all(|(own, others)| {
+            let others = others.select_rows(equations).select_columns(positions);
+            let same = |row: usize| {
+                let (own, other) = (own.row(row), others.row(row));
+                let near = SAME * own.amax();
+                // Where a power is steepest it has no slope, and tells nothing.
+                let apart = |(a, b): (&f64, &f64)| (a - b).abs() > near;
+                !own.iter().zip(other.iter()).any(apart)
+            };
+            own.shape() == others.shape() && (0..own.nrows()).all(same)
+        })
     }
+}
+
+/// Derivatives of the residual by all unknowns, and by all rates.
+fn derivatives(program: &Program, at: Point<'_>) -> [DMatrix<f64>; 2] {
+    let values = partials(program, at, &mut Workspace::new(program.n_work));
+    let by_unknown = |wrt| {
+        let Wrt::Unknown(column) = wrt else {
+            return None;
+        };
+        Some(column)
+    };
+    let by_rate = |wrt| {
+        let Wrt::Derivative(column) = wrt else {
+            return None;
+        };
+        Some(column)
+    };
+    [
+        arranged(program, &values, by_unknown),
+        arranged(program, &values, by_rate),
+    ]
 }
 
 impl Route<'_> {
     /// Where a row was, in the vectors of the route's program.
-    fn point<'a>(&'a self, row: usize, when: When, p: &'a [f64]) -> Point<'a> {
+    pub(crate) fn point<'a>(&'a self, row: usize, when: When, p: &'a [f64]) -> Point<'a> {
         let passed = &self.rows[row];
         let width = self.values.len() / self.rows.len();
         let values = &self.values[row * width..][..width];

@@ -144,17 +144,6 @@ impl<'p> Configuration<'p> {
     }
 }
 
-/// The inverse of dF/dv at a point; `None` where the equations do not determine v.
-pub(crate) fn inverse(
-    program: &Program,
-    places: &Places,
-    at: Point<'_>,
-    workspace: &mut Workspace,
-) -> Option<DMatrix<f64>> {
-    let here = partials(program, at, workspace);
-    consistent(program, places, &here).try_inverse()
-}
-
 /// The derivatives of the residual at a point.
 pub(crate) fn partials(program: &Program, at: Point<'_>, workspace: &mut Workspace) -> Vec<f64> {
     let mut values = vec![0.0; program.partials(Function::Residual).len()];

@@ -93,7 +93,7 @@ impl Carrier {
             });
         }
         let track = Track::new(program, recording, observer, set).ok()?;
-        let (observer, states) = (&track.route.observer, track.places.states.len());
+        let (observer, states) = (&track.route.observer, track.route.places.states.len());
         let mut found = Self {
             course: Course::default(),
             rows: Vec::new(),
@@ -106,7 +106,7 @@ impl Carrier {
         };
         let p = recording.parameters(program, set);
         let mut own = Own::new(program, &p, &directions);
-        let mut known = Known::new(&track, program, recording, &p, &own.touched);
+        let mut known = Known::new(&track, recording, &own.touched);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
         let (mut passages, mut room) = (BTreeMap::new(), Vectors::default());
@@ -118,8 +118,8 @@ impl Carrier {
                 let at = track.point(row, When::Before, &p, &mut room);
                 own.seen(at, &directions, &mut by_output);
             }
-            let corrected = known.modes(row, When::Before, before).ok()?;
-            let stepped = known.modes(row, When::After, after).ok()?;
+            let corrected = known.modes(row, When::Before, before);
+            let stepped = known.modes(row, When::After, after);
             let at = track.point(row, When::After, &p, &mut room);
             own.forces(at, &directions, &mut forces);
             found.course.time.push(at.t);

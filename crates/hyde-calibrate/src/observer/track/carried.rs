@@ -23,6 +23,8 @@ pub(crate) struct Carried {
     pub(super) positions: Vec<usize>,
     /// Where its own are.
     pub(super) own: Vec<usize>,
+    /// Its equations that are those of the route's program, in the order of these.
+    pub(super) equations: Vec<usize>,
     /// Of each row, before the correction and after it: its own unknowns, and their rates.
     pub(super) values: Vec<f64>,
 }
@@ -76,13 +78,6 @@ impl Carried {
             };
         &self.values[first..][..2 * count]
     }
-
-    /// A point of the route in the vectors of the program, what is its own being 0.
-    pub(super) fn at_rest<'a>(&self, at: Point<'a>, room: &'a mut Vectors) -> Point<'a> {
-        room.reach(self.positions.len() + self.own.len());
-        room.take(&self.positions, at);
-        room.in_place(at)
-    }
 }
 
 impl<'p> Track<'p> {
@@ -99,9 +94,14 @@ impl<'p> Track<'p> {
         }
         let positions = positions(self.route.program, program)?;
         let start = Plant::new(program, recording, set).ok()?;
-        let (p, mut places) = (start.p, start.places);
-        let step_s = recording.step_s;
-        let equations = Equations::new(self, program, &positions, &places, &p, step_s)?;
+        let (p, step_s) = (start.p, recording.step_s);
+        let equations = Equations::new(self, program, &positions, &start.places, &p, step_s)?;
+        let of_axis: Vec<usize> = (0..program.n_unknowns)
+            .filter(|number| !equations.rows.contains(number))
+            .collect();
+        if !self.has_equations_of(program, &p, &of_axis, &positions) {
+            return None;
+        }
         let states = &equations.own[..equations.states];
         let mut x: Vec<f64> = states.iter().map(|&own| start.y[own]).collect();
         let count = self.route.rows.len();
@@ -125,14 +125,11 @@ impl<'p> Track<'p> {
                 std::mem::swap(&mut begin, &mut end);
             }
         }
-        let in_it = |list: &[usize]| list.iter().map(|&place| positions[place]).collect();
-        places.states = in_it(&self.places.states);
-        places.algebraics = in_it(&self.places.algebraics);
         Some(Self {
             route: Arc::clone(&self.route),
-            places,
             carried: Some(Carried {
                 own: equations.own,
+                equations: of_axis,
                 positions,
                 values,
             }),
@@ -171,7 +168,7 @@ impl Vectors {
     }
 
     /// The point, its vectors being these.
-    fn in_place<'a>(&'a self, at: Point<'a>) -> Point<'a> {
+    pub(super) fn in_place<'a>(&'a self, at: Point<'a>) -> Point<'a> {
         Point {
             y: &self.y,
             yp: &self.yp,

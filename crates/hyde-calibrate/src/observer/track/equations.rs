@@ -25,6 +25,8 @@ pub(super) struct Equations<'p> {
     pub(super) states: usize,
     /// Positions of the states of the axis.
     pub(super) of_axis: Vec<usize>,
+    /// Its equations, by number, and their residuals.
+    pub(super) rows: Vec<usize>,
     pub(super) residual: Box<dyn SomeRows + 'p>,
     /// What v changes by with a unit of the residuals.
     pub(super) by_residual: DMatrix<f64>,
@@ -58,7 +60,7 @@ impl<'p> Equations<'p> {
         let mut is_own = vec![true; program.n_unknowns];
         for (number, &position) in positions.iter().enumerate() {
             is_own[position] = false;
-            if places.differential[position] != track.places.differential[number] {
+            if places.differential[position] != track.route.places.differential[number] {
                 return None;
             }
         }
@@ -117,6 +119,7 @@ impl<'p> Equations<'p> {
             residual: program
                 .kernels
                 .some_rows(Function::Residual, &derivatives.rows),
+            rows: derivatives.rows,
             own,
             states,
             by_residual,
