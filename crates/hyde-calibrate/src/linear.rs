@@ -8,5 +8,7 @@
 mod dense;
 mod exponential;
 
-pub(crate) use dense::{SIDE_BY_SIDE, add_low_rank, add_product, set_product, set_products};
+pub(crate) use dense::{
+    SIDE_BY_SIDE, add_low_rank, add_low_rank_across, add_product, set_product, set_products,
+};
 pub(crate) use exponential::{Step, phi1, steps};

@@ -3,7 +3,8 @@
 
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
-use std::slice::ChunksExactMut;
+use std::iter::Zip;
+use std::slice::{ChunksExact, ChunksExactMut};
 use std::sync::LazyLock;
 
 /// What the processor has.
@@ -76,6 +77,66 @@ pub(crate) fn add_low_rank(
             asked: &mut vec![0.0; rank],
             columns: columns.as_mut_slice().chunks_exact_mut(height),
         });
+    }
+}
+
+/// Adds to the head of each column what products of thin matrices make of the head of a column of others: `u v' x`.
+pub(crate) fn add_low_rank_across(
+    [u, v]: [&DMatrix<f64>; 2],
+    others: &DMatrix<f64>,
+    columns: &mut DMatrix<f64>,
+) {
+    assert_eq!(u.ncols(), v.ncols(), "as many products");
+    assert_eq!(others.ncols(), columns.ncols(), "another a column");
+    assert!(v.nrows() <= others.nrows() && u.nrows() <= columns.nrows());
+    if !u.is_empty() && !v.is_empty() {
+        let (from, to) = (others.nrows(), columns.nrows());
+        ARCH.dispatch(AddLowRankAcross {
+            pairs: u
+                .as_slice()
+                .chunks_exact(u.nrows())
+                .zip(v.as_slice().chunks_exact(v.nrows())),
+            others: others.as_slice().chunks_exact(from),
+            columns: columns.as_mut_slice().chunks_exact_mut(to),
+        });
+    }
+}
+
+/// See [`add_low_rank_across`].
+struct AddLowRankAcross<'a> {
+    pairs: Zip<ChunksExact<'a, f64>, ChunksExact<'a, f64>>,
+    others: ChunksExact<'a, f64>,
+    columns: ChunksExactMut<'a, f64>,
+}
+
+impl WithSimd for AddLowRankAcross<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for (other, column) in self.others.zip(self.columns) {
+            for (u, v) in self.pairs.clone() {
+                let (x, x_rest) = S::as_simd_f64s(&other[..v.len()]);
+                let (v, v_rest) = S::as_simd_f64s(v);
+                let mut sum = simd.splat_f64s(0.0);
+                for (&x, &v) in x.iter().zip(v) {
+                    sum = simd.mul_add_e_f64s(x, v, sum);
+                }
+                let mut asked = simd.reduce_sum_f64s(sum);
+                for (x, v) in x_rest.iter().zip(v_rest) {
+                    asked += x * v;
+                }
+                let (out, out_rest) = S::as_mut_simd_f64s(&mut column[..u.len()]);
+                let (u, u_rest) = S::as_simd_f64s(u);
+                let wide = simd.splat_f64s(asked);
+                for (out, &u) in out.iter_mut().zip(u) {
+                    *out = simd.mul_add_e_f64s(wide, u, *out);
+                }
+                for (out, &u) in out_rest.iter_mut().zip(u_rest) {
+                    *out += asked * u;
+                }
+            }
+        }
     }
 }
 
@@ -264,6 +325,23 @@ mod tests {
                 let asked = v.tr_mul(&columns.rows(0, rows)) + &w * &given;
                 known.rows_mut(0, rows).gemm(1.0, &u, &asked, 1.0);
                 add_low_rank(&u, [&v, &w], &given, &mut columns);
+                assert_eq!(columns, known, "{rows} x {rank}");
+            }
+        }
+    }
+
+    #[test]
+    fn heads_of_columns_get_what_thin_matrices_make_of_others() {
+        for rows in 1..20 {
+            for rank in 1..4 {
+                let u = DMatrix::from_fn(rows, rank, |i, k| (i + 2 * k) as f64 - 4.0);
+                let v = DMatrix::from_fn(rows + 3, rank, |i, k| (3 * i + k) as f64 - 5.0);
+                let others = DMatrix::from_fn(rows + 4, 3, |i, j| (i + j) as f64 - 2.0);
+                let mut columns = DMatrix::from_fn(rows + 2, 3, |i, j| (i * 5 + j) as f64 - 7.0);
+                let mut known = columns.clone();
+                let asked = v.tr_mul(&others.rows(0, rows + 3));
+                known.rows_mut(0, rows).gemm(1.0, &u, &asked, 1.0);
+                add_low_rank_across([&u, &v], &others, &mut columns);
                 assert_eq!(columns, known, "{rows} x {rank}");
             }
         }

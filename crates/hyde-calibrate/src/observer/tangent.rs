@@ -12,18 +12,18 @@
 
 mod known;
 mod own;
+mod passage;
 
-use super::gain::Observer;
 use super::over_record::When;
 use super::track::{Passing, Track, Vectors};
-use crate::linear::set_product;
-use crate::plant::{Leg, length, size_of};
+use crate::linear::{add_low_rank_across, set_product};
+use crate::plant::{length, shortest_steps, size_of};
 use crate::records::Recording;
 use hyde_program::Program;
 pub(crate) use known::{Known, Modes};
 use nalgebra::{DMatrix, DMatrixView};
 pub(crate) use own::Own;
-use std::collections::BTreeMap;
+use passage::{Corrected, bent_at_end};
 
 /// A parameter by whose small change innovations are differentiated.
 pub(crate) struct Direction {
@@ -35,8 +35,6 @@ pub(crate) struct Direction {
 
 /// A product of matrices is faster than one a column from this many columns on.
 const MANY: usize = 8;
-/// What bends in a row is put into one matrix for all columns from this many on: that costs as much as so many do.
-const WIDE: usize = 64;
 
 /// How whitened innovations change along a track, a column a direction, channels below each other.
 pub(crate) fn changes(
@@ -71,7 +69,6 @@ pub(crate) fn along(
     mut each: impl FnMut(usize, DMatrixView<'_, f64>),
 ) {
     let route = &track.route;
-    let observer = &route.observer;
     let (states, channels) = (route.places.states.len(), recording.channels.len());
     let count = directions.len();
     let mut own = Own::new(program, p, directions);
@@ -85,10 +82,7 @@ pub(crate) fn along(
     let (mut then, mut reached) = (now.clone(), now.clone());
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
-    // Of a row in which equations bend: errors at its end, and those with what it shows, of all there is at its start.
-    let mut errors = DMatrix::zeros(states, states + 2 * touched);
-    let mut bent = DMatrix::zeros(states + channels, states + 2 * touched + channels);
-    let (mut at, mut room) = (None, Vectors::default());
+    let mut room = Vectors::default();
     // The combination of modes in which the last row was left, and what bends there.
     let (mut left, mut bend) = (0, None);
     for (row, passed) in route.rows.iter().enumerate() {
@@ -105,15 +99,9 @@ pub(crate) fn along(
         let same = next == before_it;
         let legs = track.legs(row);
         let within = legs.iter().any(|leg| leg.event.is_some());
-        let one = [Leg {
-            level: 0,
-            event: None,
-        }];
-        let legs = if within { legs } else { &one };
-        let bends = at.is_some() && route.splitting(left).is_some();
-        let apart = at.is_some() && (within || bends && count < WIDE);
+        let stepped = (row > 0 && !within).then_some(left);
         let end = if same { &then } else { &now };
-        if apart {
+        if within {
             // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
             // So do forces, which jump from one mode to the next, and grow evenly in each.
             let (mut configuration, mut number) = (left, passed.legs.start);
@@ -151,23 +139,21 @@ pub(crate) fn along(
                 }
             }
         } else {
+            if stepped.is_some() {
+                known.kick(left, bend, shortest_steps(), &now, &mut before);
+            }
             put(&mut before, states, &now);
             put(&mut before, states + touched, end);
         }
         put(&mut before, states + 2 * touched, &by_output);
-        let matrix = if bends && !apart {
-            // One product for all directions, of what bends at both ends of the row and the step between.
+        let bent = stepped.and_then(|left| {
             let reached = match next == left {
                 true => bend_next,
                 false => route.bend(left, Passing::Row(row, When::Before)),
             };
-            known.bent(left, [bend, reached], &mut errors);
-            correct(&errors, &known.modes[seen], observer, &mut bent);
-            &bent
-        } else {
-            let stepped = at.filter(|_| !apart);
-            corrected.of(&known.modes, stepped, seen, observer)
-        };
+            bent_at_end(&mut known, (left, reached), seen)
+        });
+        let matrix = corrected.of(&mut known, stepped, seen, touched);
         if count < MANY {
             for (mut after, before) in after.column_iter_mut().zip(before.column_iter()) {
                 let after = &mut after.as_mut_slice()[..states + channels];
@@ -177,13 +163,15 @@ pub(crate) fn along(
             let mut after = after.rows_mut(0, states + channels);
             after.gemm(1.0, matrix, &before, 0.0);
         }
+        if let Some([answered, by_all]) = bent {
+            add_low_rank_across([&answered, &by_all], &before, &mut after);
+        }
         if let Some(row) = row.checked_sub(recording.first_row) {
             each(row, after.rows(states, channels));
         }
         fix(&passed.fixed, &mut after);
         std::mem::swap(&mut before, &mut after);
         std::mem::swap(&mut now, &mut then);
-        at = Some(known.modes(row, When::After, next));
         (left, bend) = (next, bend_next);
     }
 }
@@ -212,94 +200,6 @@ fn put_few<const N: usize>(into: &mut [f64], height: usize, row: usize, rows: &[
     let (columns, _) = rows.as_chunks::<N>();
     for (into, column) in into.chunks_exact_mut(height).zip(columns) {
         into[row..row + N].copy_from_slice(column);
-    }
-}
-
-/// What a row's time and the correction at its end make of errors, forces at both ends and what channels show: corrected
-/// errors, and the whitened change of innovations.
-#[derive(Default)]
-struct Corrected {
-    /// By the modes of the row, if it is one step or none, and those at its end.
-    known: BTreeMap<(Option<usize>, usize), DMatrix<f64>>,
-}
-
-impl Corrected {
-    fn of(
-        &mut self,
-        known: &[Modes],
-        stepped: Option<usize>,
-        seen: usize,
-        observer: &Observer,
-    ) -> &DMatrix<f64> {
-        let make = || {
-            let outputs = &known[seen].outputs;
-            let ((channels, states), touched) = (outputs.shape(), known[seen].first.ncols());
-            // Errors before the correction, of errors and forces.
-            let mut errors = DMatrix::zeros(states, states + 2 * touched);
-            match stepped.map(|at| &known[at]) {
-                Some(Modes {
-                    exp, first, second, ..
-                }) => {
-                    errors.columns_mut(0, states).copy_from(exp);
-                    // The second integral is that of a growth over the row.
-                    errors
-                        .columns_mut(states, touched)
-                        .copy_from(&(first - second));
-                    errors
-                        .columns_mut(states + touched, touched)
-                        .copy_from(second);
-                }
-                None => errors.fill_with_identity(),
-            }
-            let mut matrix = DMatrix::zeros(states + channels, errors.ncols() + channels);
-            correct(&errors, &known[seen], observer, &mut matrix);
-            matrix
-        };
-        self.known.entry((stepped, seen)).or_insert_with(make)
-    }
-}
-
-/// What the correction at the end of a row makes of errors there, a column of `errors` each, and of what channels show beside
-/// them: corrected errors, and below them the whitened change of innovations.
-fn correct(
-    errors: &DMatrix<f64>,
-    Modes {
-        outputs,
-        gain,
-        readings,
-        ..
-    }: &Modes,
-    observer: &Observer,
-    matrix: &mut DMatrix<f64>,
-) {
-    let ((channels, states), inner) = (outputs.shape(), errors.ncols());
-    matrix.fill(0.0);
-    let (of_errors, of_channels) = matrix
-        .as_mut_slice()
-        .split_at_mut(inner * (states + channels));
-    let columns = of_errors.chunks_exact_mut(states + channels);
-    for (column, errors) in columns.zip(errors.as_slice().chunks_exact(states.max(1))) {
-        let (kept, answers) = column.split_at_mut(states);
-        kept.copy_from_slice(errors);
-        for (outputs, error) in outputs.as_slice().chunks_exact(channels).zip(errors) {
-            let each = answers.iter_mut().zip(outputs);
-            each.for_each(|(answer, output)| *answer -= output * error);
-        }
-        for (channel, answer) in answers.iter_mut().enumerate() {
-            let gain = gain.column(channel);
-            let each = kept.iter_mut().zip(gain.iter());
-            each.for_each(|(kept, gain)| *kept += gain * *answer);
-            *answer /= observer.deviations[channel];
-        }
-    }
-    let columns = of_channels.chunks_exact_mut(states + channels);
-    for (channel, column) in columns.enumerate() {
-        let gain = gain.column(channel);
-        let each = column.iter_mut().zip(gain.iter());
-        each.for_each(|(kept, gain)| *kept = -gain);
-        if readings[channel] {
-            column[states + channel] = -1.0 / observer.deviations[channel];
-        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! [`Known`]: what combinations of modes, and steps in them, make of errors and forces.
 
+use crate::observer::gain::Observer;
 use crate::observer::over_record::When;
 use crate::observer::track::{Bend, Forcing, Route, Track, acting};
-use crate::plant::{output_matrix, shortest_steps};
+use crate::plant::output_matrix;
 use crate::records::{Readings, Recording};
 use hyde_program::Workspace;
 use nalgebra::DMatrix;
@@ -56,6 +57,11 @@ impl<'t> Known<'t> {
             forcings: BTreeMap::new(),
             legs: BTreeMap::new(),
         }
+    }
+
+    /// The observer of the route.
+    pub(super) fn observer(&self) -> &'t Observer {
+        &self.route.observer
     }
 
     /// The number of the matrices of a combination of modes and a kind of row, in which a row is.
@@ -138,23 +144,18 @@ impl<'t> Known<'t> {
         }
     }
 
-    /// Times errors and forces at the begin and the end of a row, all of it a step in one combination of modes, this is errors
-    /// at its end: what bends takes them on for half of it, then the leg, then what bends at its end.
-    pub(super) fn bent(
+    /// What bends at the end of a row that is one step ([`Splitting::at_end`]).
+    pub(super) fn at_end(
         &mut self,
         configuration: usize,
-        [begin, end]: [Option<&Bend>; 2],
-        errors: &mut DMatrix<f64>,
-    ) {
-        let (states, all) = errors.shape();
-        let touched = (all - states) / 2;
-        // Units of all there is: errors, and forces at both ends.
-        let mut units = DMatrix::identity(all, all);
-        let forces = |first: usize| units.rows(first, touched).into_owned();
-        let [begins, ends] = [states, states + touched].map(forces);
-        self.kick(configuration, begin, shortest_steps(), &begins, &mut units);
-        errors.gemm(1.0, self.leg(configuration, 0), &units, 0.0);
-        self.kick(configuration, end, shortest_steps(), &ends, errors);
+        bend: &'t Bend,
+    ) -> Option<(&'t DMatrix<f64>, DMatrix<f64>)> {
+        let own = self.route.splitting(configuration)?;
+        self.leg(configuration, 0);
+        self.forcing(configuration);
+        let first = self.route.same_modes[configuration];
+        let step = (&self.legs[&(configuration, 0)], &self.forcings[&first]);
+        Some(own.at_end(bend, step))
     }
 
     /// The rates of the states that forces in the equations that are touched make.

@@ -43,12 +43,16 @@ pub(super) enum Flow {
         /// at its end, by how much the drivers change, and g at the end.
         over: DMatrix<f64>,
     },
-    /// A is diagonal.
-    Diagonal,
+    /// A is diagonal: the states do not act on each other.
+    Diagonal {
+        /// Whether each acts linearly on itself.
+        linear: bool,
+    },
 }
 
 impl<'p> Equations<'p> {
-    /// `None` where they are not linear with a constant Jv, or where what is brought acts on the axis.
+    /// `None` where Jv is not constant, where states that are not linear act on each other, or where what is brought acts on
+    /// the axis.
     pub(super) fn new(
         track: &Track<'_>,
         program: &'p Program,
@@ -71,7 +75,8 @@ impl<'p> Equations<'p> {
         let own_states = chosen(&places.states, true);
         let own = [own_states.as_slice(), &chosen(&places.algebraics, true)].concat();
         let derivatives = Derivatives::new(track, program, positions, &own, p)?;
-        let (mut constant, mut drivers, mut uneven) = (true, BTreeSet::new(), BTreeSet::new());
+        let (mut constant, mut linear) = (true, true);
+        let (mut drivers, mut uneven) = (BTreeSet::new(), BTreeSet::new());
         for (number, entry) in derivatives.entries.iter().enumerate() {
             let (true, Some(place)) = (derivatives.rows.contains(&entry.row), unknown(entry))
             else {
@@ -84,10 +89,11 @@ impl<'p> Equations<'p> {
                 if !of_v {
                     list.insert(place);
                 }
-            } else if !derivatives.is_linear(number) || (of_v && !same) {
+            } else if of_v && !(same && derivatives.is_linear(number)) {
                 return None;
             } else {
                 constant &= same;
+                linear &= derivatives.is_linear(number);
             }
         }
         let drivers: Vec<usize> = drivers.difference(&uneven).copied().collect();
@@ -103,14 +109,14 @@ impl<'p> Equations<'p> {
         let states = own_states.len();
         let rates = by_residual.rows(0, states);
         let a = |look: &[f64]| rates * of_own(by_x(look), &own_states);
-        let flow = if constant {
+        let flow = if constant && linear {
             let by_drivers = rates * of_own(by_x(&looks[0][0]), &drivers);
             Flow::Constant {
                 over: over(&a(&looks[0][0]), &by_drivers, step_s),
                 drivers,
             }
-        } else if looks.iter().all(|[here, _]| is_diagonal(&a(here))) {
-            Flow::Diagonal
+        } else if looks.iter().flatten().all(|look| is_diagonal(&a(look))) {
+            Flow::Diagonal { linear }
         } else {
             return None;
         };

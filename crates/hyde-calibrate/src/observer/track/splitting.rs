@@ -220,6 +220,27 @@ impl Splitting {
         grown(own, time).map(|first| &self.answers * first)
     }
 
+    /// The second half of what bends in a row that is one step, by where it begins. A step makes errors of errors and of forces
+    /// at both ends ([`Step`]): those of thin matrices `u v'` times the same come on top.
+    pub(crate) fn at_end<'s>(
+        &'s self,
+        bend: &'s Bend,
+        (step, forcing): (&DMatrix<f64>, &Forcing),
+    ) -> (&'s DMatrix<f64>, DMatrix<f64>) {
+        let (states, touched) = (self.states.len(), forcing.rates.ncols());
+        let by_force = bend.by_force(forcing).transpose();
+        let (u, mut v, part) = match &bend.row {
+            Some(answered) => (answered, step.tr_mul(&bend.by_error), 1.0),
+            None => {
+                let nothing = DMatrix::zeros(step.ncols(), by_force.ncols());
+                (&self.answers, nothing, 0.5 * self.row_s)
+            }
+        };
+        let mut forces = v.rows_mut(states + touched, touched);
+        forces += by_force * part;
+        (u, v)
+    }
+
     /// What bends takes errors on by half a step of a length in shortest ones, forces being as they are.
     pub(crate) fn kick(
         &self,
