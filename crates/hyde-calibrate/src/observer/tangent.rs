@@ -23,7 +23,7 @@ use hyde_program::Program;
 pub(crate) use known::{Known, Modes};
 use nalgebra::{DMatrix, DMatrixView};
 pub(crate) use own::Own;
-use passage::{Corrected, bent_at_end};
+use passage::Corrected;
 
 /// A parameter by whose small change innovations are differentiated.
 pub(crate) struct Direction {
@@ -151,7 +151,7 @@ pub(crate) fn along(
                 true => bend_next,
                 false => route.bend(left, Passing::Row(row, When::Before)),
             };
-            bent_at_end(&mut known, (left, reached), seen)
+            known.bent_at_end(row, (left, reached), seen)
         });
         let matrix = corrected.of(&mut known, stepped, seen, touched);
         if count < MANY {
@@ -163,8 +163,8 @@ pub(crate) fn along(
             let mut after = after.rows_mut(0, states + channels);
             after.gemm(1.0, matrix, &before, 0.0);
         }
-        if let Some([answered, by_all]) = bent {
-            add_low_rank_across([&answered, &by_all], &before, &mut after);
+        if let Some((answered, by_all)) = bent {
+            add_low_rank_across([answered, &by_all], &before, &mut after);
         }
         if let Some(row) = row.checked_sub(recording.first_row) {
             each(row, after.rows(states, channels));

@@ -1,5 +1,6 @@
 //! [`Known`]: what combinations of modes, and steps in them, make of errors and forces.
 
+use super::passage::correct;
 use crate::observer::gain::Observer;
 use crate::observer::over_record::When;
 use crate::observer::track::{Bend, Forcing, Route, Track, acting};
@@ -144,18 +145,35 @@ impl<'t> Known<'t> {
         }
     }
 
-    /// What bends at the end of a row that is one step ([`Splitting::at_end`]).
-    pub(super) fn at_end(
+    /// What bends at the end of a row that is one step, the correction behind it: thin matrices `u v'`, times what is corrected
+    /// by [`super::passage::Corrected`], come on top of it. By errors it is the route's.
+    pub(super) fn bent_at_end(
         &mut self,
-        configuration: usize,
-        bend: &'t Bend,
+        row: usize,
+        (configuration, bend): (usize, Option<&'t Bend>),
+        seen: usize,
     ) -> Option<(&'t DMatrix<f64>, DMatrix<f64>)> {
-        let own = self.route.splitting(configuration)?;
+        let (route, bend) = (self.route, bend?);
+        let own = route.splitting(configuration)?;
+        let [answered, by_error] = route.end(row, || {
+            let [errors, by_error] = own.at_end(bend);
+            let (channels, states) = self.modes[seen].outputs.shape();
+            let mut answered = DMatrix::zeros(states + channels, errors.ncols());
+            correct(&errors, &self.modes[seen], &route.observer, &mut answered);
+            [answered, by_error]
+        });
         self.leg(configuration, 0);
         self.forcing(configuration);
-        let first = self.route.same_modes[configuration];
+        let first = route.same_modes[configuration];
         let step = (&self.legs[&(configuration, 0)], &self.forcings[&first]);
-        Some(own.at_end(bend, step))
+        let by_force = own.at_end_by_forces(bend, step);
+        let (states, rank) = by_error.shape();
+        let mut by_all = DMatrix::zeros(states + by_force.nrows(), rank);
+        by_all.rows_mut(0, states).copy_from(by_error);
+        by_all
+            .rows_mut(states, by_force.nrows())
+            .copy_from(&by_force);
+        Some((answered, by_all))
     }
 
     /// The rates of the states that forces in the equations that are touched make.

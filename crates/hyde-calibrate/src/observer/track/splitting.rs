@@ -220,25 +220,39 @@ impl Splitting {
         grown(own, time).map(|first| &self.answers * first)
     }
 
-    /// The second half of what bends in a row that is one step, by where it begins. A step makes errors of errors and of forces
-    /// at both ends ([`Step`]): those of thin matrices `u v'` times the same come on top.
-    pub(crate) fn at_end<'s>(
-        &'s self,
-        bend: &'s Bend,
+    /// The second half of what bends in a row that is one step, by errors where it begins: these times thin matrices `u v'` come
+    /// on top of what the step makes of them.
+    pub(crate) fn at_end(&self, bend: &Bend) -> [DMatrix<f64>; 2] {
+        match &bend.row {
+            Some(answered) => [answered.clone(), self.steps[0].exp.tr_mul(&bend.by_error)],
+            None => {
+                let (states, count) = self.answers.shape();
+                [self.answers.clone(), DMatrix::zeros(states, count)]
+            }
+        }
+    }
+
+    /// What `v` is by forces at the begin of the row, and below them those at its end, which a step has behind its errors.
+    pub(crate) fn at_end_by_forces(
+        &self,
+        bend: &Bend,
         (step, forcing): (&DMatrix<f64>, &Forcing),
-    ) -> (&'s DMatrix<f64>, DMatrix<f64>) {
+    ) -> DMatrix<f64> {
         let (states, touched) = (self.states.len(), forcing.rates.ncols());
         let by_force = bend.by_force(forcing).transpose();
-        let (u, mut v, part) = match &bend.row {
-            Some(answered) => (answered, step.tr_mul(&bend.by_error), 1.0),
-            None => {
-                let nothing = DMatrix::zeros(step.ncols(), by_force.ncols());
-                (&self.answers, nothing, 0.5 * self.row_s)
-            }
+        let (mut v, part) = match &bend.row {
+            Some(_) => (
+                step.columns(states, 2 * touched).tr_mul(&bend.by_error),
+                1.0,
+            ),
+            None => (
+                DMatrix::zeros(2 * touched, by_force.ncols()),
+                0.5 * self.row_s,
+            ),
         };
-        let mut forces = v.rows_mut(states + touched, touched);
-        forces += by_force * part;
-        (u, v)
+        let mut at_end = v.rows_mut(touched, touched);
+        at_end += by_force * part;
+        v
     }
 
     /// What bends takes errors on by half a step of a length in shortest ones, forces being as they are.
