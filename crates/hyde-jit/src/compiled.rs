@@ -3,7 +3,7 @@
 use crate::interpret::{Frame, Interpreter};
 use crate::native::Native;
 use crate::routine::{self, Leaf, Routine, Slot, Step};
-use crate::some_rows::{Chosen, Known};
+use crate::some_rows::{Chosen, Known, Wanted};
 use crate::still::Still;
 use hyde_ir::dae::{self, Dae, Space};
 use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, VariableKind};
@@ -199,11 +199,7 @@ impl Kernels for Compiled {
     }
 
     fn some_rows(&self, function: Function, rows: &[usize]) -> Box<dyn SomeRows + '_> {
-        Box::new(Chosen {
-            compiled: self,
-            code: self.some_rows.code(&self.dae, function, rows, self.backend),
-            count: rows.len(),
-        })
+        self.chosen(Wanted::Rows(function, rows.to_vec()), rows.len())
     }
 
     fn bending_rows(&self) -> &[usize] {
@@ -247,6 +243,10 @@ impl Kernels for Compiled {
         self.check(at, workspace);
         let still = self.still();
         still.partials(function, at, workspace, out);
+    }
+
+    fn some_still_partials(&self, function: Function, numbers: &[usize]) -> Box<dyn SomeRows + '_> {
+        self.chosen(Wanted::Still(function, numbers.to_vec()), numbers.len())
     }
 
     fn parameter_directions(&self, chosen: &[usize], p: &[f64]) -> Vec<Vec<f64>> {
@@ -377,6 +377,15 @@ impl Compiled {
             },
             Constant::ShownFrom(figure) => experiment.figures.get(figure)?.within?.0,
             Constant::ShownTo(figure) => experiment.figures.get(figure)?.within?.1,
+        })
+    }
+
+    /// A part of a function as a kernel of its own, which writes so many values.
+    fn chosen(&self, wanted: Wanted, count: usize) -> Box<dyn SomeRows + '_> {
+        Box::new(Chosen {
+            compiled: self,
+            code: self.some_rows.code(&self.dae, wanted, self.backend),
+            count,
         })
     }
 

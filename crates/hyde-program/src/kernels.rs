@@ -203,6 +203,10 @@ pub trait Kernels: Send + Sync {
         out: &mut [f64],
     );
 
+    /// Some of those derivatives, by their numbers among [`Kernels::still_entries`], as a kernel of their own. They are bitwise
+    /// what [`Kernels::still_partials`] writes there.
+    fn some_still_partials(&self, function: Function, numbers: &[usize]) -> Box<dyn SomeRows + '_>;
+
     /// The derivative of the whole parameter vector by each of the `chosen` numbers of it, plain ones. Those are
     /// independent of each other; every other parameter whose value uses them follows.
     fn parameter_directions(&self, chosen: &[usize], p: &[f64]) -> Vec<Vec<f64>>;

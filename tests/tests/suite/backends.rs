@@ -82,6 +82,29 @@ fn some_rows_are_those_of_the_whole() {
     }
 }
 
+#[test]
+fn some_derivatives_by_parameters_are_those_of_the_whole() {
+    for case in examples::all() {
+        for program in both(&case) {
+            let p = parameters(&program, &[]);
+            let values = Values::of(&program, &mut Random(5));
+            let at = values.point(&p);
+            let mut work = Workspace::new(program.n_work);
+            for function in Function::ALL {
+                let kernels = &program.kernels;
+                let mut whole = vec![f64::NAN; kernels.still_entries(function).len()];
+                kernels.still_partials(function, at, &mut work, &mut whole);
+                let numbers: Vec<usize> = (0..whole.len()).rev().step_by(3).collect();
+                let some = kernels.some_still_partials(function, &numbers);
+                let mut own = vec![f64::NAN; numbers.len()];
+                some.evaluate(at, &mut Workspace::new(program.n_work), &mut own);
+                let known: Vec<f64> = numbers.iter().map(|&number| whole[number]).collect();
+                same(&case, &format!("derivatives of {function:?}"), &own, &known);
+            }
+        }
+    }
+}
+
 /// What the fixed steps of a calibration stand on: they evaluate what bends and no more.
 #[test]
 fn rows_that_do_not_bend_have_the_same_derivatives_everywhere() {

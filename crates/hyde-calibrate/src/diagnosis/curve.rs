@@ -18,7 +18,7 @@ use super::stage::{Ground, flat};
 use super::thresholds::Thresholds;
 use super::unknown::{CURVE_PROBE, Felt, Kind, PROBE_SIZES, Site, Variable, probe, strongest};
 use crate::fit::inflation;
-use crate::observer::{Direction, Innovations, Own, Track, Vectors, When};
+use crate::observer::{Direction, Forces, Innovations, Own, Track, Vectors, When};
 use crate::records::Recording;
 use hyde_program::Program;
 use hyde_signal::statistics::distributions::TWO_SIDED;
@@ -248,10 +248,10 @@ impl Along {
         for row in 0..track.route.rows.len() {
             if own.shown {
                 let at = track.point(row, When::Before, &p, &mut room);
-                own.seen(at, &directions, &mut by_output);
+                own.seen(at, &mut by_output);
             }
             let at = track.point(row, When::After, &p, &mut room);
-            own.forces(at, &directions, &mut forces);
+            own.forces(at, &mut forces);
             found.time.push(at.t);
             let shown = strongest(&forces).or_else(|| strongest(&by_output));
             let force = match shown.as_deref() {

@@ -5,7 +5,7 @@ use super::hypothesis::{Hypothesis, Knob};
 use super::products::Products;
 use super::projection::Projection;
 use super::stage::{Ground, flat};
-use crate::observer::{Direction, Innovations, Track, along, changes};
+use crate::observer::{Innovations, Shape, Slopes, Track, along, changes};
 use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::{DMatrixView, DVector};
@@ -56,12 +56,13 @@ impl Runs<'_> {
         let mut innovations = Vec::new();
         for (number, record) in projection.records.iter().enumerate() {
             let recording = &self.ground.recordings[number];
-            let directions = self.directions(hypothesis, recording, shapes);
+            let own = self.shapes(hypothesis, recording, shapes);
+            let mut forces = Slopes::new(self.program, &own);
             let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
             let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
             let p = recording.parameters(self.program, &set);
             let own = self.on_track(number, (&set, &p), |track| {
-                along(track, self.program, recording, &p, &directions, each);
+                along(track, recording, &p, &mut forces, each);
                 Some(track.route.innovations.clone())
             });
             innovations.push(own?);
@@ -76,10 +77,11 @@ impl Runs<'_> {
         let set = self.set(&vec![0.0; count], shapes);
         let mut columns = vec![Vec::new(); count];
         for (number, recording) in self.ground.recordings.iter().enumerate() {
-            let directions = self.directions(hypothesis, recording, &[shapes.to_vec()]);
+            let own = self.shapes(hypothesis, recording, &[shapes.to_vec()]);
+            let mut forces = Slopes::new(self.program, &own);
             let p = recording.parameters(self.program, &set);
             let own = self.on_track(number, (&set, &p), |track| {
-                Some(changes(track, self.program, recording, &p, &directions))
+                Some(changes(track, recording, &p, &mut forces))
             });
             for (column, change) in columns.iter_mut().zip(own?.column_iter()) {
                 column.extend(change.iter());
@@ -107,26 +109,38 @@ impl Runs<'_> {
         make(&own)
     }
 
-    /// Every size of every shape, a little above 0.
-    fn directions(
+    /// Every shape, and what its sizes change, a little above 0: many are nothing but a corner at 0.
+    fn shapes(
         &self,
         hypothesis: &Hypothesis,
         recording: &Recording,
         shapes: &[Vec<f64>],
-    ) -> Vec<Direction> {
-        let count = hypothesis.sizes.len();
-        let of = |(shape, which): (&Vec<f64>, usize)| {
-            let mut sizes = vec![0.0; count];
-            sizes[which] = SMALL * largest(&hypothesis.sizes[which]);
-            Direction {
-                p: recording.parameters(self.program, &self.set(&sizes, shape)),
-                step: sizes[which],
+    ) -> Vec<Shape> {
+        let small: Vec<f64> = hypothesis
+            .sizes
+            .iter()
+            .map(|size| SMALL * largest(size))
+            .collect();
+        let of = |shape: &Vec<f64>| {
+            let p = |sizes: &[f64]| recording.parameters(self.program, &self.set(sizes, shape));
+            let here = p(&small);
+            let without = |which: usize| {
+                let mut sizes = small.clone();
+                sizes[which] = 0.0;
+                let without = p(&sizes);
+                let pairs = here.iter().zip(&without).enumerate();
+                let changes = pairs.map(|(place, (here, without))| (place, here - without));
+                let changes = changes.filter(|(_, change)| *change != 0.0);
+                changes
+                    .map(|(place, change)| (place, change / small[which]))
+                    .collect()
+            };
+            Shape {
+                by_size: (0..small.len()).map(without).collect(),
+                p: here,
             }
         };
-        let each = shapes.iter();
-        each.flat_map(|shape| (0..count).map(move |which| (shape, which)))
-            .map(of)
-            .collect()
+        shapes.iter().map(of).collect()
     }
 
     fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {

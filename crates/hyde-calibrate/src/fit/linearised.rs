@@ -5,7 +5,7 @@
 
 use super::least_squares::Problem;
 use super::varied::Varied;
-use crate::observer::{Direction, Innovations, Track, changes};
+use crate::observer::{Direction, Innovations, Own, Track, changes};
 use crate::plant::{Unsupported, past_differs};
 use crate::records::Recording;
 use nalgebra::{DMatrix, DVector};
@@ -111,7 +111,8 @@ impl Problem<'_> {
                     let recording = &self.recordings[record];
                     let own = part.iter().map(|&number| direction(recording, number));
                     let own: Vec<Direction> = own.collect();
-                    changes(&tracks[record], self.program, recording, &p[record], &own)
+                    let mut forces = Own::new(self.program, &p[record], &own);
+                    changes(&tracks[record], recording, &p[record], &mut forces)
                 });
                 each.collect()
             },

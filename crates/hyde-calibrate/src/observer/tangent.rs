@@ -4,7 +4,7 @@
 //! error of the states    eps+ = exp(A T) (I - K C) eps + forcing        change of innovations    -(C eps + dh)
 //! ```
 //! A change forces the equations by what it adds to their residual where the plant is, taken linearly over a row, and the
-//! channels by dh. Both are differences by the parameter, of kernels alone. So a direction costs a few evaluations and a
+//! channels by dh. Both are differences by the parameter ([`Own`]) or derivatives ([`Slopes`]), of kernels alone. So a direction costs a few evaluations and a
 //! column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
 //! right to first order, for its force does not jump where it begins and ends to stick, and what has stuck in between forgets
 //! its speed; of contacts it is a part. Modes that begin within a row act from there on, and what bends has the derivatives
@@ -13,17 +13,19 @@
 mod known;
 mod own;
 mod passage;
+mod slopes;
 
 use super::over_record::When;
 use super::track::{Passing, Track, Vectors};
 use crate::linear::{add_low_rank_across, set_product};
 use crate::plant::{length, shortest_steps, size_of};
 use crate::records::Recording;
-use hyde_program::Program;
+use hyde_program::Point;
 pub(crate) use known::{Known, Modes};
 use nalgebra::{DMatrix, DMatrixView};
 pub(crate) use own::Own;
 use passage::Corrected;
+pub(crate) use slopes::{Shape, Slopes};
 
 /// A parameter by whose small change innovations are differentiated.
 pub(crate) struct Direction {
@@ -33,47 +35,58 @@ pub(crate) struct Direction {
     pub(crate) step: f64,
 }
 
+/// What directions add to the model along a track, a column each.
+pub(crate) trait Forces {
+    /// The number of directions.
+    fn count(&self) -> usize;
+    /// The equations that some direction changes.
+    fn touched(&self) -> &[usize];
+    /// Whether some direction changes what is measured.
+    fn shown(&self) -> bool;
+    /// What a unit of each adds to the residual of the equations that are touched.
+    fn forces(&mut self, at: Point<'_>, out: &mut DMatrix<f64>);
+    /// What it adds to what the channels show.
+    fn seen(&mut self, at: Point<'_>, out: &mut DMatrix<f64>);
+}
+
 /// A product of matrices is faster than one a column from this many columns on.
 const MANY: usize = 8;
 
 /// How whitened innovations change along a track, a column a direction, channels below each other.
 pub(crate) fn changes(
     track: &Track<'_>,
-    program: &Program,
     recording: &Recording,
     p: &[f64],
-    directions: &[Direction],
+    forces: &mut impl Forces,
 ) -> DMatrix<f64> {
     let channels = recording.channels.len();
     let rows = recording.rows() - recording.first_row;
-    let mut change = DMatrix::zeros(rows * channels, directions.len());
+    let count = forces.count();
+    let mut change = DMatrix::zeros(rows * channels, count);
     let keep = |row: usize, changes: DMatrixView<'_, f64>| {
-        for number in 0..directions.len() {
+        for number in 0..count {
             for channel in 0..channels {
                 change[(channel * rows + row, number)] = changes[(channel, number)];
             }
         }
     };
-    along(track, program, recording, p, directions, keep);
+    along(track, recording, p, forces, keep);
     change
 }
 
 /// The same, row by row: `each` gets the number of a row that counts, and how its whitened innovations change, a row a
-/// channel, a column a direction. The program is that of the track or one that it serves, `p` its parameters there.
+/// channel, a column a direction. `p` are the parameters where the track is, of its program or of one that it serves.
 pub(crate) fn along(
     track: &Track<'_>,
-    program: &Program,
     recording: &Recording,
     p: &[f64],
-    directions: &[Direction],
+    own: &mut impl Forces,
     mut each: impl FnMut(usize, DMatrixView<'_, f64>),
 ) {
     let route = &track.route;
     let (states, channels) = (route.places.states.len(), recording.channels.len());
-    let count = directions.len();
-    let mut own = Own::new(program, p, directions);
-    let mut known = Known::new(track, recording, &own.touched);
-    let touched = own.touched.len();
+    let (count, touched) = (own.count(), own.touched().len());
+    let mut known = Known::new(track, recording, own.touched());
     // A column a direction: errors of the states, forces at the start of a row and at its end, what channels show of it.
     let mut before = DMatrix::<f64>::zeros(states + 2 * touched + channels, count);
     // Errors after it and the answers below them; forces are put over these in the next row.
@@ -88,12 +101,12 @@ pub(crate) fn along(
     for (row, passed) in route.rows.iter().enumerate() {
         let [before_it, next] = passed.modes;
         let seen = known.modes(row, When::Before, before_it);
-        if own.shown {
+        if own.shown() {
             let at = track.point(row, When::Before, p, &mut room);
-            own.seen(at, directions, &mut by_output);
+            own.seen(at, &mut by_output);
         }
         let at_end = track.point(row, When::After, p, &mut room);
-        own.forces(at_end, directions, &mut then);
+        own.forces(at_end, &mut then);
         let bend_next = route.bend(next, Passing::Row(row, When::After));
         // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
         let same = next == before_it;
@@ -111,7 +124,7 @@ pub(crate) fn along(
                 number += mode.len();
                 if let Some(event) = event {
                     let at = track.within(row, &event.before, p, &mut room);
-                    own.forces(at, directions, &mut reached);
+                    own.forces(at, &mut reached);
                     bend = route.bend(configuration, Passing::Leg(number - 1, When::Before));
                 } else {
                     reached.copy_from(if same { &then } else { &now });
@@ -133,7 +146,7 @@ pub(crate) fn along(
                 if let Some(event) = event {
                     fix(&event.fixed, &mut before);
                     let at = track.within(row, &event.after, p, &mut room);
-                    own.forces(at, directions, &mut now);
+                    own.forces(at, &mut now);
                     configuration = event.configuration;
                     bend = route.bend(configuration, Passing::Leg(number - 1, When::After));
                 }

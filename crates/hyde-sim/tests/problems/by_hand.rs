@@ -236,6 +236,10 @@ impl<E: Equations> Kernels for ByHand<E> {
         panic!("no problem here is asked for rows {rows:?} of {function:?} alone")
     }
 
+    fn some_still_partials(&self, function: Function, numbers: &[usize]) -> Box<dyn SomeRows + '_> {
+        panic!("no problem here is asked for derivatives {numbers:?} of {function:?} alone")
+    }
+
     fn bending_rows(&self) -> &[usize] {
         panic!("no problem here is asked what bends")
     }

@@ -12,7 +12,7 @@
 use super::site::PROBE;
 use crate::diagnosis::projection::dot;
 use crate::linear::{SIDE_BY_SIDE, add_product, set_product, set_products};
-use crate::observer::{Direction, Known, Modes, Observer, Own, Track, Vectors, When};
+use crate::observer::{Direction, Forces, Known, Modes, Observer, Own, Track, Vectors, When};
 use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -116,12 +116,12 @@ impl Carrier {
             let [before, after] = passed.modes;
             if own.shown {
                 let at = track.point(row, When::Before, &p, &mut room);
-                own.seen(at, &directions, &mut by_output);
+                own.seen(at, &mut by_output);
             }
             let corrected = known.modes(row, When::Before, before);
             let stepped = known.modes(row, When::After, after);
             let at = track.point(row, When::After, &p, &mut room);
-            own.forces(at, &directions, &mut forces);
+            own.forces(at, &mut forces);
             found.course.time.push(at.t);
             let at = place_and_speed(&forces).or_else(|| place_and_speed(&by_output));
             (place, speed) = at.unwrap_or((place, speed));

@@ -1,6 +1,6 @@
-//! [`Own`]: evaluations of the model with other parameters where the plant is.
+//! [`Own`]: forces by differences: evaluations of the model with other parameters where the plant is.
 
-use super::Direction;
+use super::{Direction, Forces};
 use crate::plant::measured;
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
@@ -18,11 +18,12 @@ pub(crate) struct Own<'p> {
     measured: Rows<'p>,
     /// Whether some direction changes what is measured.
     pub(crate) shown: bool,
+    directions: &'p [Direction],
     workspace: Workspace,
 }
 
 impl<'p> Own<'p> {
-    pub(crate) fn new(program: &'p Program, p: &[f64], directions: &[Direction]) -> Self {
+    pub(crate) fn new(program: &'p Program, p: &[f64], directions: &'p [Direction]) -> Self {
         let moved = |place: usize| {
             directions
                 .iter()
@@ -44,27 +45,36 @@ impl<'p> Own<'p> {
             residual: Rows::new(residual, touched.len()),
             measured: Rows::new(measured(program), channels),
             shown: !rows(Function::Outputs).is_empty(),
+            directions,
             workspace: Workspace::new(program.n_work),
             touched,
         }
     }
+}
 
-    /// What a unit of each size adds to what the channels show, where it does: a column a direction.
-    pub(crate) fn seen(&mut self, at: Point<'_>, directions: &[Direction], out: &mut DMatrix<f64>) {
-        let workspace = &mut self.workspace;
-        self.measured.changes(at, directions, workspace, 0.0, out);
+impl Forces for Own<'_> {
+    fn count(&self) -> usize {
+        self.directions.len()
     }
 
-    /// What a unit of each size adds to the residual of the equations that are touched: a column a direction.
-    pub(crate) fn forces(
-        &mut self,
-        at: Point<'_>,
-        directions: &[Direction],
-        out: &mut DMatrix<f64>,
-    ) {
+    fn touched(&self) -> &[usize] {
+        &self.touched
+    }
+
+    fn shown(&self) -> bool {
+        self.shown
+    }
+
+    fn forces(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
         let workspace = &mut self.workspace;
         self.residual
-            .changes(at, directions, workspace, ROUNDING, out);
+            .changes(at, self.directions, workspace, ROUNDING, out);
+    }
+
+    fn seen(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
+        let workspace = &mut self.workspace;
+        self.measured
+            .changes(at, self.directions, workspace, 0.0, out);
     }
 }
 
