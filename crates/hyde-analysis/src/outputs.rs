@@ -123,9 +123,15 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         ));
     }
     for replayed in &experiment.replayed {
-        let name = format!("replayed {}", replayed.name);
-        dae.outputs
-            .push(single(name, replayed.value, &replayed.quantity, true));
+        let values = [
+            ("model has for", replayed.value),
+            ("replayed for", replayed.recorded),
+        ];
+        for (what, value) in values {
+            let name = format!("{what} {}", replayed.name);
+            dae.outputs
+                .push(single(name, value, &replayed.quantity, true));
+        }
     }
     for (number, reduction) in experiment.reductions.iter().enumerate() {
         let quantity = dae.variables[reduction.var].quantity.clone();

@@ -222,6 +222,7 @@ impl System {
         }
         for replayed in &mut flat.experiment.replayed {
             each(arena, &mut replayed.value);
+            each(arena, &mut replayed.recorded);
         }
         for reduction in &mut flat.experiment.reductions {
             each(arena, &mut reduction.value);

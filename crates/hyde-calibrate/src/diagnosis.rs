@@ -73,7 +73,7 @@ pub(crate) use stage::{Ground, Stage, flat};
 pub use answer::{Diagnosis, Verdict};
 pub use apart::{Alternative, Experiment, Relation};
 pub use claims::FoundModel;
-pub use command_timing::{CommandTiming, moved_columns};
+pub use command_timing::{CommandTiming, Commands, Uncompared, Why, moved_columns};
 pub use curve::{CurvePoint, FoundCurve, Over};
 pub use evidence::Gates;
 pub use finding::{Finding, Quantity};

@@ -31,11 +31,11 @@ mod refusals;
 mod selftest;
 
 pub use diagnosis::{
-    Alternative, Author, Built, CommandTiming, CurvePoint, Diagnosis, Experiment, Factor, Finding,
-    FoundCurve, FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law,
-    LawVariable, Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen, Site,
-    Summand, TABLE, Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,
-    moved_columns,
+    Alternative, Author, Built, CommandTiming, Commands, CurvePoint, Diagnosis, Experiment, Factor,
+    Finding, FoundCurve, FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce,
+    Law, LawVariable, Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen,
+    Site, Summand, TABLE, Threshold, Thresholds, Trial, Uncompared, Unknown, Variable, Verdict,
+    Why, Written, diagnose, moved_columns,
 };
 pub use fit::{
     Cause, Fit, FittedParameter, Fold, Identifiability, Information, Joint, LIMIT, Part, Problem,

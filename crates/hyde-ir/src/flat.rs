@@ -208,13 +208,16 @@ pub struct Measured {
     pub origin: Origin,
 }
 
-/// `replay x = column` of a continuous variable, in the observed form: what the model itself has for it.
+/// `replay x = column` of a continuous variable, in the observed form: what the model itself has for it, and what takes its
+/// place.
 #[derive(Clone, Debug)]
 pub struct Replayed {
     /// The variable.
     pub name: String,
-    /// The record and its column, which takes its place.
-    pub column: ColumnId,
+    /// What takes its place: an expression of columns.
+    pub recorded: ExprId,
+    /// The column that this reads, if it is one alone.
+    pub column: Option<ColumnId>,
     /// What the model has for it.
     pub value: ExprId,
     /// Where it comes from the tick before: the equation `u = pre(w)` that alone decides it.

@@ -31,10 +31,12 @@ pub struct Measured {
 pub struct Replayed {
     /// Its name.
     pub name: String,
-    /// The number of the recorded column among those of the program.
-    pub column: usize,
+    /// The number of the recorded column among those of the program, if it is one alone.
+    pub column: Option<usize>,
     /// The output that the model has for it.
     pub output: usize,
+    /// The output that takes its place.
+    pub recorded: usize,
     /// The equation `u = pre(w)` that alone decides it, where there is one.
     pub register: Option<Origin>,
     /// Where the replay is written.

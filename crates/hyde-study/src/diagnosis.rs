@@ -25,8 +25,8 @@ use crate::Project;
 use crate::comparison::RecordErrors;
 use crate::unknown;
 use hyde_calibrate::{
-    Cause, CommandTiming, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations,
-    Rejection, ResidualMap, Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
+    Cause, Commands, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations, Rejection,
+    ResidualMap, Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
 use std::collections::BTreeMap;
@@ -58,7 +58,7 @@ pub struct Diagnosed<'a> {
     /// Why the calibrated model does not follow the records, if it does not.
     pub causes: Vec<Cause>,
     /// When the model puts out the commands that are replayed, beside when they were recorded.
-    pub timings: Vec<CommandTiming>,
+    pub commands: Commands,
     /// Hypotheses that could not be put on the model, each with the reason.
     pub hindered: Vec<(usize, String)>,
     /// Hypotheses that were found first and dropped.
@@ -120,7 +120,7 @@ impl<'a> Diagnosed<'a> {
             whiteness,
             curves: Vec::new(),
             causes: Vec::new(),
-            timings: Vec::new(),
+            commands: Commands::default(),
             hindered: hindered(project, candidates, found),
             barred: {
                 let barred = found.barred.iter().copied();

@@ -169,9 +169,51 @@ fn a_column_that_is_recorded_late_is_not_blamed_on_the_controller() {
 }
 
 #[test]
-fn a_replay_of_more_than_a_column_is_allowed_and_not_compared() {
-    let mean = ("replay F = file.F", "replay F = 0.5*(file.F + file.F)");
-    let report = diagnosed(mean, 0, 0);
-    assert_eq!(report["sentence"], "no missing effect detected");
-    assert_eq!(report["command_timings"].as_array().unwrap().len(), 0);
+fn a_scaled_replay_is_compared_too() {
+    let late = MODEL.replace("u = result", "u = pre(result)");
+    for (model, late_s) in [(MODEL, 0.0), (&late, 0.002)] {
+        let scaled = model.replace("replay F = file.F", "replay F = 0.5*(file.F + file.F)");
+        let folder = tempfile::tempdir().unwrap();
+        record(folder.path(), 0, 0);
+        write(&folder.path().join("sled.hyde"), &scaled);
+        let report = report(folder.path(), &["diagnose", "sled.hyde", "sled"]);
+        assert_eq!(timing(&report), (late_s, false));
+        assert_eq!(not_compared(&report), "");
+    }
+}
+
+/// Why the command is not compared with its record; empty where it is.
+fn not_compared(report: &Value) -> String {
+    let all = report["commands_not_compared"].as_array().unwrap();
+    let why = all.first().map(|own| own["why"].as_str().unwrap());
+    why.unwrap_or_default().to_owned()
+}
+
+#[test]
+fn a_command_that_is_not_compared_is_told_with_the_reason() {
+    let cases = [
+        (
+            ("replay F = file.F", "replay F = file.F + 1 [mN/m]*file.r"),
+            "its replay does not read exactly one column",
+        ),
+        (
+            ("cnc(2 [ms])", "cnc(1.5 [ms])"),
+            "its clock cnc ticks every 1.5 ms, and the record has a sample every 1 ms",
+        ),
+        (("2 [kN/m]*(r - s)", "2 [kN/m]*r"), "however it is moved"),
+    ];
+    for (change, why) in cases {
+        let report = diagnosed(change, 0, 0);
+        assert_eq!(
+            report["command_timings"].as_array().unwrap().len(),
+            0,
+            "{why}"
+        );
+        let told = not_compared(&report);
+        assert!(told.contains(why), "{why}: {told}");
+        says(
+            &report,
+            "whether the model puts out F at the right time is not known",
+        );
+    }
 }

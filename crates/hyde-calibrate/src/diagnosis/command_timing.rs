@@ -46,11 +46,51 @@ pub struct CommandTiming {
     pub of_column: bool,
 }
 
+/// A command that is not compared with its record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncompared {
+    /// The number of the command among those that the program replays.
+    pub replayed: usize,
+    /// The number of a clock that puts it out.
+    pub clock: usize,
+    /// Why not.
+    pub why: Why,
+}
+
+/// Why a command is not compared with its record.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Why {
+    /// The model has parts that are not equations, which run in no other way than with it.
+    Parts,
+    /// What is replayed is not made of one column.
+    Columns,
+    /// The clock does not tick with the rows of a record: its period and the time of a row, s.
+    Clock {
+        /// Its period.
+        period_s: f64,
+        /// The time of a row.
+        step_s: f64,
+    },
+    /// What the model puts out is something else, whatever it is moved by: the difference at best, rms over that of the command.
+    Differs(f64),
+}
+
+/// Commands that clocked parts put out, beside their records.
+#[derive(Clone, Debug, Default)]
+pub struct Commands {
+    /// Those that are compared.
+    pub timings: Vec<CommandTiming>,
+    /// The others.
+    pub uncompared: Vec<Uncompared>,
+}
+
 impl CommandTiming {
     /// Moves the column of the command to where it acted, in a record that the same program reads.
     pub fn mend(&self, program: &Program, recording: &mut Recording) {
         let rows = (-self.late_s / recording.step_s).round() as i64;
-        recording.move_column(program.experiment.replayed[self.replayed].column, rows);
+        if let Some(column) = program.experiment.replayed[self.replayed].column {
+            recording.move_column(column, rows);
+        }
     }
 }
 
@@ -59,14 +99,11 @@ impl Diagnosis {
     ///
     /// # Errors
     /// The model has no fixed-step form.
-    pub fn command_timings(
-        &self,
-        inquiry: &Inquiry<'_>,
-    ) -> Result<Vec<CommandTiming>, Unsupported> {
+    pub fn commands(&self, inquiry: &Inquiry<'_>) -> Result<Commands, Unsupported> {
         let ground = self.ground(inquiry);
         let set = ground.set_in(&self.program, &self.kept);
         let problem = ground.problem(&self.program, &self.varied, &set, None);
-        command_timings(&problem, &self.after.values, ground.thresholds)
+        commands(&problem, &self.after.values, ground.thresholds)
     }
 }
 
@@ -80,63 +117,76 @@ pub fn moved_columns(
     thresholds: &Thresholds,
 ) -> Result<Vec<CommandTiming>, Unsupported> {
     let nominal: Vec<f64> = problem.varied.iter().map(|own| own.nominal).collect();
-    let timings = command_timings(problem, &nominal, thresholds)?;
+    let timings = commands(problem, &nominal, thresholds)?.timings;
     if timings.iter().all(|own| own.late_s == 0.0) {
         return Ok(Vec::new());
     }
     let values = problem.solve(&nominal)?.values;
-    let mut timings = command_timings(problem, &values, thresholds)?;
+    let mut timings = commands(problem, &values, thresholds)?.timings;
     timings.retain(|own| own.of_column);
     Ok(timings)
 }
 
-/// Every replayed command whose controller ticks with the rows of all records and explains it for the most part, parameters
-/// at some values.
-fn command_timings(
+/// Every replayed command that clocked parts put out, parameters at some values.
+fn commands(
     problem: &Problem<'_>,
     values: &[f64],
     thresholds: &Thresholds,
-) -> Result<Vec<CommandTiming>, Unsupported> {
+) -> Result<Commands, Unsupported> {
     let program = problem.program;
-    if program.experiment.replayed.is_empty() || !program.foreign.is_empty() {
-        return Ok(Vec::new());
-    }
     let set = problem.settings(values);
+    let each = problem.recordings.iter();
+    let p: Vec<Vec<f64>> = each.map(|own| own.parameters(program, &set)).collect();
+    let (mut found, mut ticking) = (Commands::default(), Vec::new());
+    for number in 0..program.experiment.replayed.len() {
+        let pairs = problem.recordings.iter().zip(&p);
+        let each = pairs.filter_map(|(recording, p)| Controller::of(program, recording, p, number));
+        match each.collect::<Result<Vec<Controller<'_>>, Uncompared>>() {
+            Ok(controllers) if controllers.is_empty() => {}
+            Ok(controllers) => ticking.push((number, controllers)),
+            Err(uncompared) => found.uncompared.push(uncompared),
+        }
+    }
+    if ticking.is_empty() {
+        return Ok(found);
+    }
     let tracks = Track::all(program, problem.recordings, problem.observer, &set)?;
-    let numbers = 0..program.experiment.replayed.len();
-    let each = numbers.filter_map(|number| timing(problem, thresholds, &tracks, &set, number));
-    each.collect()
+    for (number, controllers) in &ticking {
+        match timing(problem, thresholds, (&tracks, &set), *number, controllers)? {
+            Some(Ok(timing)) => found.timings.push(timing),
+            Some(Err(uncompared)) => found.uncompared.push(uncompared),
+            None => {}
+        }
+    }
+    Ok(found)
 }
 
+/// The time of a command with its controllers, one a record; `None` where records have different clocks, or none ends.
 fn timing(
     problem: &Problem<'_>,
     thresholds: &Thresholds,
-    tracks: &[Track<'_>],
-    set: &[(usize, f64)],
+    (tracks, set): (&[Track<'_>], &[(usize, f64)]),
     number: usize,
-) -> Option<Result<CommandTiming, Unsupported>> {
+    controllers: &[Controller<'_>],
+) -> Result<Option<Result<CommandTiming, Uncompared>>, Unsupported> {
     let program = problem.program;
     let replayed = &program.experiment.replayed[number];
+    let (Some(controller), Some(recording)) = (controllers.first(), problem.recordings.first())
+    else {
+        return Ok(None);
+    };
+    let (clock, step_s) = (&controller.clocks[0], recording.step_s);
     let mut sums = Vec::new();
-    let mut clock = None;
-    for (recording, track) in problem.recordings.iter().zip(tracks) {
+    let records = problem.recordings.iter().zip(tracks);
+    for ((recording, track), controller) in records.zip(controllers) {
         let p = recording.parameters(program, set);
-        let controller = Controller::of(program, recording, &p, replayed.output)?;
-        let computed = controller.along(track, recording, &p);
-        let recorded = &recording.columns[replayed.column];
-        let own = moved(recorded, &computed, recording.first_row, controller.most());
-        let constant = |which| program.kernels.constant(which, &p).unwrap_or(0.0);
-        let number = controller.clocks[0].clock;
-        let times = (
-            constant(Constant::Period(number)),
-            constant(Constant::Delay(number)),
-        );
-        clock = Some((recording.step_s, number, times));
+        let [computed, recorded] = controller.along(track, recording, &p);
+        let own = moved(&recorded, &computed, recording.first_row, controller.most());
         if sums.is_empty() {
             sums = vec![(0.0, 0.0); own.len()];
         }
         if sums.len() != own.len() {
-            return None;
+            return Ok(None);
         }
         for (sum, own) in sums.iter_mut().zip(own) {
             *sum = (sum.0 + own.0, sum.1 + own.1);
@@ -150,30 +200,31 @@ fn timing(
             f64::INFINITY
         }
     };
-    let (step_s, clock, (period_s, delay_s)) = clock?;
     let middle = sums.len() / 2;
-    let best = (0..sums.len()).min_by(|&a, &b| part(a).total_cmp(&part(b)))?;
+    let Some(best) = (0..sums.len()).min_by(|&a, &b| part(a).total_cmp(&part(b))) else {
+        return Ok(None);
+    };
     if part(best) > thresholds.a_part {
-        return None;
+        let why = Why::Differs(part(best).sqrt());
+        return Ok(Some(Err(clock.uncompared(number, why))));
     }
     let clear = part(best) <= (1.0 - thresholds.mostly) * part(middle);
     let best = if clear { best } else { middle };
     let rows = middle as i64 - best as i64;
-    let of_column = if rows == 0 {
-        Ok(false)
-    } else {
-        follows_moved(problem, set, replayed.column, -rows)
+    let of_column = match replayed.column {
+        Some(column) if rows != 0 => follows_moved(problem, set, column, -rows)?,
+        Some(_) | None => false,
     };
-    Some(of_column.map(|of_column| CommandTiming {
+    Ok(Some(Ok(CommandTiming {
         replayed: number,
         late_s: rows as f64 * step_s,
-        clock,
-        period_s,
-        delay_s,
+        clock: clock.clock,
+        period_s: clock.period_s,
+        delay_s: clock.delay_s,
         error: part(middle).sqrt(),
         error_moved: part(best).sqrt(),
         of_column,
-    }))
+    })))
 }
 
 /// Of every shift of the record, in rows from `-most` to `most`: the sum of squares of its difference from what was computed,
@@ -226,8 +277,8 @@ fn follows_moved(
 /// The clocked parts that put a command out.
 struct Controller<'p> {
     program: &'p Program,
-    /// What the model has for the command.
-    output: usize,
+    /// What the model has for the command, and what was recorded.
+    outputs: [usize; 2],
     clocks: Vec<Ticks>,
     /// The places of the memory that they write, and those that hold what they put out.
     own: Vec<usize>,
@@ -235,41 +286,82 @@ struct Controller<'p> {
     measured: Vec<(usize, usize, usize, f64)>,
 }
 
-/// When a clock ticks, in rows.
+/// When a clock ticks, in rows, and what it declares.
 struct Ticks {
     clock: usize,
     every: i64,
     first: i64,
     /// From its tick to the change of what is held.
     delay: i64,
+    period_s: f64,
+    delay_s: f64,
 }
 
-impl<'p> Controller<'p> {
-    /// `None` where a clock does not tick with the rows.
-    fn of(program: &'p Program, recording: &Recording, p: &[f64], output: usize) -> Option<Self> {
+impl Ticks {
+    /// `None` where the clock does not tick with the rows.
+    fn of(program: &Program, recording: &Recording, p: &[f64], clock: usize) -> Option<Self> {
         let in_rows = |which| {
             let rows = program.kernels.constant(which, p)? / recording.step_s;
             let whole = rows.round();
             ((rows - whole).abs() <= WITH_ROWS * whole.max(1.0)).then_some(whole as i64)
         };
-        let mut clocks = Vec::new();
-        for clock in needed(program, output, p) {
-            let every = in_rows(Constant::Period(clock))?;
-            let first = in_rows(Constant::Phase(clock))?;
-            let delay_s = program.kernels.constant(Constant::Delay(clock), p)?;
-            let delay = (delay_s / recording.step_s - WITH_ROWS).ceil().max(0.0) as i64;
-            if every < 1 {
-                return None;
-            }
-            clocks.push(Ticks {
-                clock,
-                every,
-                first,
-                delay,
-            });
+        let every = in_rows(Constant::Period(clock)).filter(|every| *every >= 1)?;
+        let delay_s = program.kernels.constant(Constant::Delay(clock), p)?;
+        Some(Self {
+            clock,
+            every,
+            first: in_rows(Constant::Phase(clock))?,
+            delay: (delay_s / recording.step_s - WITH_ROWS).ceil().max(0.0) as i64,
+            period_s: program.kernels.constant(Constant::Period(clock), p)?,
+            delay_s,
+        })
+    }
+
+    /// A command that the clock puts out, and that is not compared.
+    fn uncompared(&self, replayed: usize, why: Why) -> Uncompared {
+        Uncompared {
+            replayed,
+            clock: self.clock,
+            why,
         }
-        if clocks.is_empty() {
-            return None;
+    }
+}
+
+impl<'p> Controller<'p> {
+    /// That of a replayed command, in a record; `None` where no clocked part puts it out.
+    fn of(
+        program: &'p Program,
+        recording: &Recording,
+        p: &[f64],
+        replayed: usize,
+    ) -> Option<Result<Self, Uncompared>> {
+        let command = &program.experiment.replayed[replayed];
+        let needed = needed(program, command.output, p);
+        let number = *needed.first()?;
+        let because = |clock: usize, why: Why| {
+            Some(Err(Uncompared {
+                replayed,
+                clock,
+                why,
+            }))
+        };
+        if !program.foreign.is_empty() {
+            return because(number, Why::Parts);
+        }
+        if command.column.is_none() {
+            return because(number, Why::Columns);
+        }
+        let mut clocks = Vec::new();
+        for clock in needed {
+            let Some(ticks) = Ticks::of(program, recording, p, clock) else {
+                let period_s = program.kernels.constant(Constant::Period(clock), p);
+                let why = Why::Clock {
+                    period_s: period_s.unwrap_or(f64::NAN),
+                    step_s: recording.step_s,
+                };
+                return because(clock, why);
+            };
+            clocks.push(ticks);
         }
         let writes = |own: &Ticks| {
             let held = program.holds.iter().filter(|hold| hold.clock == own.clock);
@@ -277,13 +369,13 @@ impl<'p> Controller<'p> {
             let targets = program.kernels.tick_targets(own.clock);
             targets.into_iter().chain(held).collect::<Vec<usize>>()
         };
-        Some(Self {
+        Some(Ok(Self {
             program,
-            output,
+            outputs: [command.output, command.recorded],
             own: clocks.iter().flat_map(writes).collect(),
             clocks,
             measured: measured(program, p),
-        })
+        }))
     }
 
     /// The rows by which the record is moved at most.
@@ -291,17 +383,17 @@ impl<'p> Controller<'p> {
         PERIODS * self.clocks.iter().map(|own| own.every).max().unwrap_or(1)
     }
 
-    /// What it puts out in each row.
-    fn along(&self, track: &Track<'_>, recording: &Recording, p: &[f64]) -> Vec<f64> {
+    /// What it puts out in each row, and what was recorded.
+    fn along(&self, track: &Track<'_>, recording: &Recording, p: &[f64]) -> [Vec<f64>; 2] {
         let program = self.program;
-        let command = program.kernels.some_rows(Function::Outputs, &[self.output]);
+        let command = program.kernels.some_rows(Function::Outputs, &self.outputs);
         let shown: Vec<usize> = self.measured.iter().map(|own| own.1).collect();
         let shown = program.kernels.some_rows(Function::Outputs, &shown);
         let mut workspace = Workspace::new(program.n_work);
         let (mut room, mut outputs) = (Vectors::default(), vec![0.0; self.measured.len()]);
         let mut memory: Option<Vec<f64>> = None;
         let mut pending: Vec<(i64, usize, Vec<f64>)> = Vec::new();
-        let mut computed = Vec::with_capacity(recording.rows());
+        let mut found = [Vec::new(), Vec::new()];
         for row in 0..recording.rows() {
             let at = track.point(row, When::After, p, &mut room);
             let mut z = at.z.to_vec();
@@ -337,13 +429,14 @@ impl<'p> Controller<'p> {
                 }
                 !due
             });
-            let mut value = [0.0];
+            let mut values = [0.0; 2];
             let at = Point { y: &y, z: &z, ..at };
-            command.evaluate(at, &mut workspace, &mut value);
-            computed.push(value[0]);
+            command.evaluate(at, &mut workspace, &mut values);
+            let each = found.iter_mut().zip(values);
+            each.for_each(|(list, value)| list.push(value));
             memory = Some(z);
         }
-        computed
+        found
     }
 
     /// The clocks that tick in a row, in the order of the data.

@@ -22,8 +22,9 @@ use crate::model::lower::Resolved;
 use crate::refusals::records as refused;
 use hyde_diag::{MadeBy, Origin};
 use hyde_ir::flat::{Equation, Measured, Replayed};
-use hyde_ir::{Expr as Ir, ExprId, FlatModel, Interpolation, Memo, VarId, VariableKind};
+use hyde_ir::{ColumnId, Expr as Ir, ExprId, FlatModel, Interpolation, Memo, VarId, VariableKind};
 use hyde_syntax::ast::ExperimentItem;
+use std::collections::BTreeSet;
 
 /// A clock ticks several times between two rows if its period is at most this part of their distance.
 const SEVERAL: f64 = 0.6;
@@ -47,7 +48,7 @@ pub(crate) fn find_replays(model: &mut Model<'_, '_>, root: InstanceId) {
                     root,
                     used: false,
                     value: None,
-                    column: None,
+                    recorded: None,
                 });
             }
         }
@@ -73,15 +74,11 @@ pub(crate) fn replayed(model: &mut Model<'_, '_>, var: VarId, value: Typed) -> T
     let declared = model.typed(value.id, model.dim(var), drive.target.span);
     model.agree(&declared, &column, "the variable and its record are", root);
     noise_of_column(model, drive, (&declared, column.id), root);
-    if let Ir::Var(read, _) = model.flat.exprs[column.id]
-        && let VariableKind::Column(column, _) = model.flat.variables[read].kind
-    {
-        model.replays[number].column = Some(column);
-    }
     if is_held(&model.flat, var, value.id) {
         note_ticks_between_rows(model, var, value.id, column.id);
         column.id = with_held_columns(model, column.id);
     }
+    model.replays[number].recorded = Some(column.id);
     column
 }
 
@@ -211,7 +208,7 @@ pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
     for number in 0..model.replays.len() {
         let replay = model.replays[number];
         let Replay { drive, var, .. } = replay;
-        let (Some(value), Some(column)) = (replay.value, replay.column) else {
+        let (Some(value), Some(recorded)) = (replay.value, replay.recorded) else {
             continue;
         };
         if model.flat.variables[var].kind != VariableKind::Continuous {
@@ -220,12 +217,37 @@ pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
         let origin = model.tree.origin(replay.root, drive.target.span);
         model.flat.experiment.replayed.push(Replayed {
             name: drive.target.dotted(),
-            column,
+            column: only_column(&model.flat, recorded),
+            recorded,
             value,
             register: register(&model.flat, value).cloned(),
             quantity: model.flat.variables[var].quantity.clone(),
             origin: origin.made_by(MadeBy::Experiment),
         });
+    }
+}
+
+/// The column that an expression reads, if it is one alone.
+fn only_column(flat: &FlatModel, id: ExprId) -> Option<ColumnId> {
+    let below = flat.exprs.below(&[id]).into_iter();
+    let columns = below.filter_map(|id| {
+        let Ir::Var(read, _) = flat.exprs[id] else {
+            return None;
+        };
+        match flat.variables[read].kind {
+            VariableKind::Column(column, _) => Some(column),
+            VariableKind::Continuous
+            | VariableKind::Discrete
+            | VariableKind::Clocked(_)
+            | VariableKind::Held(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => None,
+        }
+    });
+    let columns: BTreeSet<ColumnId> = columns.collect();
+    match columns.len() {
+        1 => columns.first().copied(),
+        _ => None,
     }
 }
 

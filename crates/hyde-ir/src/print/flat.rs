@@ -332,12 +332,10 @@ impl Printer<'_> {
             );
         }
         for replayed in &experiment.replayed {
-            let column = &self.flat.columns[replayed.column];
             let _ = writeln!(
                 out,
-                "  {}.{} replayed for {}{}",
-                column.record,
-                column.column,
+                "  {} replayed for {}{}",
+                self.names.expr(replayed.recorded),
                 self.names.expr(replayed.value),
                 comment(&replayed.origin, self.sources)
             );

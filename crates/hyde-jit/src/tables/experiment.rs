@@ -20,7 +20,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
     let first_cut = first_curve - known.cuts.len();
     let conditions = known.conditions().count();
     let first_reduction = first_cut - known.reductions.len() - conditions - responses;
-    let first_replayed = first_reduction - known.replayed.len();
+    let first_replayed = first_reduction - 2 * known.replayed.len();
     let first_measured = first_replayed - known.measured.len();
     let first_condition = first_reduction + known.reductions.len();
     let mut conditions_before = first_condition..;
@@ -49,11 +49,12 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
         replayed: known
             .replayed
             .iter()
-            .zip(first_replayed..)
+            .zip((first_replayed..).step_by(2))
             .map(|(replayed, output)| Replayed {
                 name: replayed.name.clone(),
-                column: replayed.column.index(),
+                column: replayed.column.map(|column| column.index()),
                 output,
+                recorded: output + 1,
                 register: replayed.register.clone(),
                 origin: replayed.origin.clone(),
             })

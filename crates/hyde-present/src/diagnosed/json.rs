@@ -29,6 +29,7 @@ pub fn json(told: &Diagnosed<'_>) -> Value {
         "refused": refused(told),
         "frozen": frozen(told),
         "command_timings": command_timings(told),
+        "commands_not_compared": commands_not_compared(told),
         "effects": effects(told),
         "unexplained": told.found.unexplained,
         "unknown": told
@@ -71,7 +72,7 @@ fn refused(told: &Diagnosed<'_>) -> Value {
 
 /// When the model puts out replayed commands.
 fn command_timings(told: &Diagnosed<'_>) -> Value {
-    let each = told.timings.iter().map(|own| {
+    let each = told.commands.timings.iter().map(|own| {
         let edit = timing::edit(told, own).map(
             |own| json!({ "file": own.file, "line": own.line, "from": own.from, "to": own.to }),
         );
@@ -87,6 +88,13 @@ fn command_timings(told: &Diagnosed<'_>) -> Value {
         })
     });
     each.collect()
+}
+
+/// Replayed commands whose time is not known, with the reason.
+fn commands_not_compared(told: &Diagnosed<'_>) -> Value {
+    let each = timing::uncompared(told);
+    each.map(|(command, why)| json!({ "command": command, "why": why }))
+        .collect()
 }
 
 /// Readings that were held for a while.

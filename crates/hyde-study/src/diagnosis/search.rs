@@ -53,7 +53,7 @@ fn searched<T>(
         .collect();
     let mut hypotheses: Vec<Hypothesis> = candidates.iter().map(hypothesis).collect();
     let moved = mend_columns(calibration, thresholds)?;
-    let (found, agreed, curves, timings) = {
+    let (found, agreed, curves, commands) = {
         let project = &calibration.project;
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
         let headers = crate::headers(&project.records);
@@ -79,10 +79,11 @@ fn searched<T>(
         let count = if curves { found.findings.len() } else { 0 };
         let curves = (0..count).map(|number| found.curve(&inquiry, number));
         let curves: Vec<_> = curves.collect();
-        let mut timings = found.command_timings(&inquiry)?;
+        let mut commands = found.commands(&inquiry)?;
+        let timings = &mut commands.timings;
         timings.retain(|own| moved.iter().all(|moved| moved.replayed != own.replayed));
         timings.extend(moved);
-        (found, agreed, curves, timings)
+        (found, agreed, curves, commands)
     };
     if let Some(own) = &found.observer {
         calibration.observer = own.clone();
@@ -104,7 +105,7 @@ fn searched<T>(
     Ok(Ok(tell(&Diagnosed {
         causes,
         curves,
-        timings,
+        commands,
         ..told
     })))
 }

@@ -1,7 +1,7 @@
 //! What a diagnosis tells of the time of a command: that the model puts it out too late or too early, and what to write instead.
 
 use super::Diagnosed;
-use hyde_calibrate::CommandTiming;
+use hyde_calibrate::{CommandTiming, Uncompared, Why};
 use hyde_units::significant;
 
 /// A text of the user's file that is to be another one.
@@ -19,7 +19,7 @@ pub struct Edit {
 
 /// The commands that the model puts out at another time than the record.
 pub fn wrong<'t>(told: &'t Diagnosed<'_>) -> impl Iterator<Item = &'t CommandTiming> {
-    told.timings.iter().filter(|own| own.late_s != 0.0)
+    told.commands.timings.iter().filter(|own| own.late_s != 0.0)
 }
 
 /// `the model puts out nu 1 ms too late`
@@ -41,7 +41,7 @@ pub fn short(told: &Diagnosed<'_>, own: &CommandTiming) -> String {
 /// What it stands on, and what to write: sentences without the stop at their ends.
 pub fn about(told: &Diagnosed<'_>, own: &CommandTiming) -> Vec<String> {
     let percent = |part: f64| significant(100.0 * part, 2);
-    let clock = &told.found.program.clocks[own.clock].name;
+    let clock = clock(told, own.clock);
     let found = format!(
         "{}: along the measured motion, what {clock} puts out differs from the record by {} % of its rms, and by {} % if it is \
          moved by {}",
@@ -60,7 +60,7 @@ pub fn about(told: &Diagnosed<'_>, own: &CommandTiming) -> Vec<String> {
 }
 
 fn repair(told: &Diagnosed<'_>, own: &CommandTiming) -> String {
-    let clock = &told.found.program.clocks[own.clock].name;
+    let clock = clock(told, own.clock);
     if own.of_column {
         let (late, by) = (own.late_s < 0.0, ms(own.late_s));
         let sign = if late { "subtract" } else { "add" };
@@ -110,6 +110,39 @@ pub fn edit(told: &Diagnosed<'_>, own: &CommandTiming) -> Option<Edit> {
 /// The name of a command.
 pub fn command<'t>(told: &'t Diagnosed<'_>, own: &CommandTiming) -> &'t str {
     &told.found.program.experiment.replayed[own.replayed].name
+}
+
+fn clock<'t>(told: &'t Diagnosed<'_>, number: usize) -> &'t str {
+    &told.found.program.clocks[number].name
+}
+
+/// Commands that are not compared with their records in time, each with the reason.
+pub fn uncompared<'t>(told: &'t Diagnosed<'_>) -> impl Iterator<Item = (&'t str, String)> {
+    told.commands.uncompared.iter().map(|own| {
+        let replayed = &told.found.program.experiment.replayed[own.replayed];
+        (replayed.name.as_str(), reason(told, own))
+    })
+}
+
+/// `its clock cnc ticks every 0.25 ms, and the record has a sample every 1 ms`
+fn reason(told: &Diagnosed<'_>, own: &Uncompared) -> String {
+    let clock = clock(told, own.clock);
+    match own.why {
+        Why::Parts => {
+            "the model contains an FMU, which runs only in time with the model".to_owned()
+        }
+        Why::Columns => "its replay does not read exactly one column".to_owned(),
+        Why::Clock { period_s, step_s } => format!(
+            "its clock {clock} ticks every {}, and the record has a sample every {}",
+            ms(period_s),
+            ms(step_s)
+        ),
+        Why::Differs(part) => format!(
+            "along the measured motion, what {clock} puts out differs from the record by {} % of its rms, however it is \
+             moved",
+            significant(100.0 * part, 2)
+        ),
+    }
 }
 
 /// A time without its sign.

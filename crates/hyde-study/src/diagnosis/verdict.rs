@@ -164,7 +164,11 @@ pub fn grounds(told: &Diagnosed<'_>) -> Vec<String> {
     let change = format!(
         "the mean square of the innovations {change} {which}; a complete model gives about 1"
     );
-    [change].into_iter().chain(observer).collect()
+    let uncompared = timing::uncompared(told).map(|(command, why)| {
+        format!("whether the model puts out {command} at the right time is not known: {why}")
+    });
+    let all = [change].into_iter().chain(observer);
+    all.chain(uncompared).collect()
 }
 
 /// What speaks against the verdict.

@@ -1,7 +1,7 @@
 //! [`Replay`]: a variable whose equation a recorded column takes the place of.
 
 use crate::instance::InstanceId;
-use hyde_ir::{ColumnId, ExprId, VarId};
+use hyde_ir::{ExprId, VarId};
 use hyde_syntax::ast::Drive;
 
 /// `replay x = column;` with the variable that it is about.
@@ -13,6 +13,6 @@ pub(crate) struct Replay<'a> {
     pub(super) used: bool,
     /// What the variable is without its effects: what its column is recorded of.
     pub(super) value: Option<ExprId>,
-    /// The column that has taken its place, where it did as it is recorded.
-    pub(super) column: Option<ColumnId>,
+    /// What has taken its place.
+    pub(super) recorded: Option<ExprId>,
 }

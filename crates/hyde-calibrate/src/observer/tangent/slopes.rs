@@ -1,0 +1,133 @@
+//! [`Slopes`]: forces by derivatives, of many shapes of one effect: one evaluation a shape tells those of all its sizes.
+
+use super::Forces;
+use hyde_program::{Function, PartialEntry, Point, Program, SomeRows, Workspace, Wrt};
+use nalgebra::DMatrix;
+use std::collections::BTreeSet;
+
+/// A shape of an effect.
+pub(crate) struct Shape {
+    /// The whole parameter vector where derivatives are taken.
+    pub(crate) p: Vec<f64>,
+    /// What a unit of each size changes of it: places and by how much.
+    pub(crate) by_size: Vec<Vec<(usize, f64)>>,
+}
+
+/// Derivatives of the model by the sizes of some shapes where the plant is; a column a size of a shape, sizes behind each other.
+pub(crate) struct Slopes<'p> {
+    touched: Vec<usize>,
+    residual: Chosen<'p>,
+    measured: Chosen<'p>,
+    shapes: &'p [Shape],
+    workspace: Workspace,
+}
+
+/// Some derivatives of a function by parameters.
+struct Chosen<'p> {
+    derivatives: Box<dyn SomeRows + 'p>,
+    /// The row in which each is put, and the place of the parameter it is by.
+    places: Vec<(usize, usize)>,
+    values: Vec<f64>,
+}
+
+impl<'p> Slopes<'p> {
+    pub(crate) fn new(program: &'p Program, shapes: &'p [Shape]) -> Self {
+        let moved = shapes
+            .iter()
+            .flat_map(|shape| shape.by_size.iter().flatten());
+        let moved: BTreeSet<usize> = moved.map(|(place, _)| *place).collect();
+        let rows = program.kernels.still_entries(Function::Residual);
+        let rows = rows.iter().filter(|entry| by(entry, &moved).is_some());
+        let touched: BTreeSet<usize> = rows.map(|entry| entry.row).collect();
+        let touched: Vec<usize> = touched.into_iter().collect();
+        let channels = program.experiment.measured.iter();
+        let channels: Vec<usize> = channels.map(|measured| measured.output).collect();
+        Self {
+            residual: Chosen::new(program, Function::Residual, &touched, &moved),
+            measured: Chosen::new(program, Function::Outputs, &channels, &moved),
+            shapes,
+            workspace: Workspace::new(program.n_work),
+            touched,
+        }
+    }
+}
+
+impl Forces for Slopes<'_> {
+    fn count(&self) -> usize {
+        self.shapes.iter().map(|shape| shape.by_size.len()).sum()
+    }
+
+    fn touched(&self) -> &[usize] {
+        &self.touched
+    }
+
+    fn shown(&self) -> bool {
+        !self.measured.places.is_empty()
+    }
+
+    fn forces(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
+        self.residual.put(at, self.shapes, &mut self.workspace, out);
+    }
+
+    fn seen(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
+        self.measured.put(at, self.shapes, &mut self.workspace, out);
+    }
+}
+
+impl<'p> Chosen<'p> {
+    /// Those of some rows by what is moved.
+    fn new(
+        program: &'p Program,
+        function: Function,
+        rows: &[usize],
+        moved: &BTreeSet<usize>,
+    ) -> Self {
+        let entries = program.kernels.still_entries(function);
+        let (mut numbers, mut places) = (Vec::new(), Vec::new());
+        for (number, entry) in entries.iter().enumerate() {
+            let Some(place) = by(entry, moved) else {
+                continue;
+            };
+            let each = rows.iter().enumerate();
+            for (row, _) in each.filter(|(_, row)| **row == entry.row) {
+                numbers.push(number);
+                places.push((row, place));
+            }
+        }
+        Self {
+            derivatives: program.kernels.some_still_partials(function, &numbers),
+            values: vec![0.0; places.len()],
+            places,
+        }
+    }
+
+    /// What a unit of each size of each shape changes of the rows: a column a size.
+    fn put(
+        &mut self,
+        at: Point<'_>,
+        shapes: &[Shape],
+        workspace: &mut Workspace,
+        out: &mut DMatrix<f64>,
+    ) {
+        out.fill(0.0);
+        let mut columns = 0..;
+        for shape in shapes {
+            let at = Point { p: &shape.p, ..at };
+            self.derivatives.evaluate(at, workspace, &mut self.values);
+            for (size, column) in shape.by_size.iter().zip(&mut columns) {
+                for ((row, place), value) in self.places.iter().zip(&self.values) {
+                    let changes = size.iter().filter(|(own, _)| own == place);
+                    changes.for_each(|(_, change)| out[(*row, column)] += value * change);
+                }
+            }
+        }
+    }
+}
+
+/// The parameter that a derivative is by, if it is one of those that are moved.
+fn by(entry: &PartialEntry, moved: &BTreeSet<usize>) -> Option<usize> {
+    let Wrt::Parameter(place) = entry.wrt else {
+        return None;
+    };
+    moved.contains(&place).then_some(place)
+}
