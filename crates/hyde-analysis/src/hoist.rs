@@ -151,21 +151,11 @@ impl Hoisting {
             |p| Some(p.origin.clone()),
         );
         let Some(origin) = origin else { return id };
+        let name = format!("p{}", self.count);
         let param = dae.parameters.push(Parameter {
-            name: format!("p{}", self.count),
-            len: None,
-            value: vec![id],
-            quantity: Quantity::number(),
-            structural: false,
             is_final: true,
-            found: false,
             derived: true,
-            prior: None,
-            role: hyde_ir::Role::Plain,
-            allowed: hyde_units::Allowed::default(),
-            range: None,
-            source: None,
-            origin,
+            ..Parameter::new(name, id, Quantity::number(), origin)
         });
         dae.parameter_places.push(last);
         dae.parameter_order.push(param);

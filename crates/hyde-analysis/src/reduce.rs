@@ -376,21 +376,12 @@ fn add_rows(system: &mut System) {
 /// The memory of a group's factors; the run sets them before anything reads them.
 fn factors(system: &mut System, number: usize, len: usize, origin: &Origin) -> VarId {
     let zero = system.exprs().constant(0.0);
+    let name = format!("states[{}]", number + 1);
+    let origin = origin.made_by(MadeBy::Derivative);
     system.flat.variables.push(Variable {
-        name: format!("states[{}]", number + 1),
         len: Some(len),
-        first: 1,
-        kind: VariableKind::Discrete,
-        quantity: Quantity::number(),
         start: vec![zero],
         fixed: true,
-        start_given: false,
-        freed: false,
-        state: hyde_ir::StateChoice::Open,
-        flow: false,
-        boolean: false,
-        input: false,
-        trace: None,
-        origin: origin.made_by(MadeBy::Derivative),
+        ..Variable::new(name, VariableKind::Discrete, Quantity::number(), origin)
     })
 }

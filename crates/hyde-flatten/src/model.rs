@@ -157,23 +157,8 @@ impl<'a, 'd> Model<'a, 'd> {
             field: None,
         });
         let origin = self.tree.origin(instance, span).made_by(made_by);
-        self.flat.variables.push(Variable {
-            name,
-            len: None,
-            first: 1,
-            kind,
-            quantity: Quantity::number(),
-            start: Vec::new(),
-            fixed: false,
-            start_given: false,
-            freed: false,
-            state: hyde_ir::StateChoice::Open,
-            flow: false,
-            boolean: false,
-            input: false,
-            trace: None,
-            origin,
-        })
+        let variable = Variable::new(name, kind, Quantity::number(), origin);
+        self.flat.variables.push(variable)
     }
 
     /// A placeholder for what could not be lowered; its mistake is already reported.

@@ -137,6 +137,28 @@ pub struct Variable {
 }
 
 impl Variable {
+    /// A scalar that nothing is said of but this.
+    #[must_use]
+    pub const fn new(name: String, kind: VariableKind, quantity: Quantity, origin: Origin) -> Self {
+        Self {
+            name,
+            len: None,
+            first: 1,
+            kind,
+            quantity,
+            start: Vec::new(),
+            fixed: false,
+            start_given: false,
+            freed: false,
+            state: StateChoice::Open,
+            flow: false,
+            boolean: false,
+            input: false,
+            trace: None,
+            origin,
+        }
+    }
+
     /// Number of elements; 1 for a scalar.
     #[must_use]
     pub fn size(&self) -> usize {
@@ -212,6 +234,27 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// A number that may be set, and that nothing is said of but this.
+    #[must_use]
+    pub fn new(name: String, value: ExprId, quantity: Quantity, origin: Origin) -> Self {
+        Self {
+            name,
+            len: None,
+            value: vec![value],
+            quantity,
+            allowed: Allowed::default(),
+            structural: false,
+            is_final: false,
+            found: false,
+            derived: false,
+            prior: None,
+            role: Role::Plain,
+            range: None,
+            source: None,
+            origin,
+        }
+    }
+
     /// Number of elements; 1 for a scalar.
     #[must_use]
     pub fn size(&self) -> usize {

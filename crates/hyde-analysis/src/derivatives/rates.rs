@@ -218,23 +218,9 @@ pub(crate) fn new_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
     let name = format!("der({})", system.cell_name(cell));
     let of = &system.flat.variables[cell.0];
     let dimension = of.quantity.dimension.divide(hyde_units::Dimension::TIME);
-    let variable = Variable {
-        name,
-        len: None,
-        first: 1,
-        kind: VariableKind::Continuous,
-        quantity: Quantity::usual(dimension),
-        start: Vec::new(),
-        fixed: false,
-        start_given: false,
-        freed: false,
-        state: hyde_ir::StateChoice::Open,
-        flow: false,
-        boolean: false,
-        input: false,
-        trace: None,
-        origin: of.origin.made_by(MadeBy::Derivative),
-    };
+    let quantity = Quantity::usual(dimension);
+    let origin = of.origin.made_by(MadeBy::Derivative);
+    let variable = Variable::new(name, VariableKind::Continuous, quantity, origin);
     let id = system.flat.variables.push(variable);
     Some(system.exprs().add(Expr::Var(id, Index::SCALAR)))
 }

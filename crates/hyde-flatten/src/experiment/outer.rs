@@ -5,7 +5,6 @@ use crate::instance::ParameterNotes;
 use crate::model::Model;
 use hyde_diag::Origin;
 use hyde_ir::{Expr as Ir, ExprId, Parameter, Quantity};
-use hyde_units::Allowed;
 
 /// A parameter that the model does not declare, for what drives it from outside.
 pub(super) fn outer_parameter(
@@ -17,22 +16,8 @@ pub(super) fn outer_parameter(
     origin: &Origin,
 ) -> ExprId {
     model.parameters.push(ParameterNotes::made(dim));
-    let param = model.flat.parameters.push(Parameter {
-        name,
-        len: None,
-        value: vec![value],
-        quantity,
-        allowed: Allowed::default(),
-        structural: false,
-        is_final: false,
-        found: false,
-        derived: false,
-        prior: None,
-        role: hyde_ir::Role::Plain,
-        range: None,
-        source: None,
-        origin: origin.clone(),
-    });
+    let parameter = Parameter::new(name, value, quantity, origin.clone());
+    let param = model.flat.parameters.push(parameter);
     model.flat.experiment.free.push(param);
     let parameter = Ir::Param(param, hyde_ir::Index::SCALAR);
     model.flat.exprs.add(parameter)

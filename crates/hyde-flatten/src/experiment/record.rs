@@ -11,7 +11,7 @@ use hyde_ir::{
     Column, ColumnId, FlatModel, Interpolation, Parameter, Quantity, VarId, VariableKind,
 };
 use hyde_syntax::ast::Reference;
-use hyde_units::{Allowed, Dimension, NamedUnit, unit_in_name};
+use hyde_units::{Dimension, NamedUnit, unit_in_name};
 use std::collections::BTreeMap;
 
 /// `record.column`, `.next`, `.first`, `.mean`; `record.begin` and `record.end`.
@@ -237,20 +237,8 @@ fn recorded_parameter(
     model.parameters.push(ParameterNotes::made(dim));
     let origin = model.tree.origin(0, span).made_by(MadeBy::Experiment);
     let param = model.flat.parameters.push(Parameter {
-        name: name.clone(),
-        len: None,
-        value: vec![zero],
-        quantity,
-        allowed: Allowed::default(),
-        structural: false,
-        is_final: false,
-        found: false,
-        derived: false,
-        prior: None,
-        role: hyde_ir::Role::Plain,
-        range: None,
         source: Some(format!("record {record}")),
-        origin,
+        ..Parameter::new(name.clone(), zero, quantity, origin)
     });
     model.column_values.insert(name, param);
     param

@@ -18,9 +18,7 @@ use crate::model::Model;
 use crate::refusals::values as refused;
 use hyde_diag::{Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
-use hyde_ir::{
-    Expr as Ir, ExprId, Id as _, Index, ParamId, Parameter, Range, Role, VarId, VariableKind,
-};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, ParamId, Parameter, Range, VarId, VariableKind};
 use hyde_syntax::ast::Element;
 use hyde_units::{Allowed, Dimension, Kind};
 
@@ -315,21 +313,10 @@ impl<'a> Model<'a, '_> {
             None => self.flat.exprs.constant(0.0),
         };
         self.parameters.push(ParameterNotes::made(dim));
+        let origin = self.tree.origin(instance, span);
         let param = self.flat.parameters.push(Parameter {
-            name,
-            len: None,
-            value: vec![value],
-            quantity,
             allowed,
-            structural: false,
-            is_final: false,
-            found: false,
-            derived: false,
-            prior: None,
-            role: Role::Plain,
-            range: None,
-            source: None,
-            origin: self.tree.origin(instance, span),
+            ..Parameter::new(name, value, quantity, origin)
         });
         let start = self.flat.exprs.add(Ir::Param(param, Index::SCALAR));
         self.flat.variables[var].start = vec![start];
