@@ -1,5 +1,6 @@
 //! An effect of size 0 does not act, but the axis drives what it brings: a body on a spring, a bristle. Where its equations are
-//! linear they are solved along the run of the model without it; what follows is what a run of the whole model tells.
+//! linear, or each state flows on its own, they are solved along the run of the model without it; what follows is what a run of
+//! the whole model tells.
 
 use crate::driven_body::{SLOW, diagnosed};
 use serde_json::Value;
@@ -19,17 +20,18 @@ end {name};
     )
 }
 
-/// A bristle, of a name, its rate with another term.
-fn bristle(name: &str, bend: &str) -> String {
+/// Two bristles side by side that bend over with a power of their bending, of a name; the rate of one with another term.
+fn bristles(name: &str, power: u32, bend: &str) -> String {
     format!(
         "effect {name} on Rail
   size Force F = 0 in -10 .. 10 [N];
   shape Length z0 = 10 [mm] in 0.1 .. 100 [mm];
-  Real z(start = 0, fixed = true);
+  Real z(start = 0, fixed = true), y(start = 0, fixed = true);
   Velocity v = der(a.s);
-  add a.f = F*z;
+  add a.f = F*(z + y)/2;
 equation
-  der(z) = (v - noEvent(abs(v))*z)/z0{bend};
+  der(z) = (v - noEvent(abs(v))*z^{power})/z0{bend};
+  der(y) = (v - noEvent(abs(v))*y^{power})/(2*z0);
 end {name};
 "
     )
@@ -37,12 +39,14 @@ end {name};
 
 #[test]
 fn what_an_effect_brings_is_carried_along_as_in_a_run_of_its_own() {
-    // Beside each effect the same with a term that does nothing but bend its equations: that one needs runs of its own.
+    // Beside each effect the same with a term that does nothing but bend or couple its equations: that one needs runs of its own.
     let effects = [
         swing("Swing", ""),
         swing("BentSwing", " + 1e-9 [1/(m2.s2)]*z^3"),
-        bristle("Bristle", ""),
-        bristle("BentBristle", " + 1e-9 [1/s]*z^3"),
+        bristles("Bristles", 1, ""),
+        bristles("CoupledBristles", 1, " + 1e-9 [1/s]*y"),
+        bristles("Springs", 3, ""),
+        bristles("CoupledSprings", 3, " + 1e-9 [1/s]*y"),
         SLOW.to_owned(),
     ];
     let found = diagnosed(&effects.each_ref().map(String::as_str), |t| {
@@ -58,10 +62,12 @@ fn what_an_effect_brings_is_carried_along_as_in_a_run_of_its_own() {
         let own = rejected.iter().find(|one| one["effect"] == name);
         own.unwrap_or_else(|| panic!("{name}: {}", found["sentence"]))
     };
-    // A constant flow is exact but for what drives it within a row; a bristle is taken as it is in the middle of a row.
+    // A constant flow is exact but for what drives it within a row; a bristle is taken as it is in the middle of a row, and a
+    // spring a few times a row.
     for (carried, run, close) in [
         ("Swing", "BentSwing", 1e-6),
-        ("Bristle", "BentBristle", 1e-3),
+        ("Bristles", "CoupledBristles", 1e-3),
+        ("Springs", "CoupledSprings", 1e-3),
     ] {
         let (carried, run) = (of(carried), of(run));
         let same = |a: &Value, b: &Value| {
