@@ -248,10 +248,26 @@ pub fn in_unit(si: f64, unit: Unit) -> f64 {
         return si;
     }
     let value = unit.from_si(si);
+    let same = |candidate: &f64| unit.to_si(*candidate).to_bits() == si.to_bits();
+    if let Some(short) = fifteen_digits(value).filter(same) {
+        return short;
+    }
     let short = format!("{value:.14e}").parse().unwrap_or(value);
     let candidates = [short, value, value.next_up(), value.next_down()];
-    let same = |candidate: &f64| unit.to_si(*candidate).to_bits() == si.to_bits();
     candidates.into_iter().find(same).unwrap_or(value)
+}
+
+/// The double next to a decimal of 15 digits that is next to a value, or beside that where the value is between two; without
+/// text. `None` where powers of ten are no doubles.
+fn fifteen_digits(value: f64) -> Option<f64> {
+    let power = 14_i32.saturating_sub(value.abs().log10().floor() as i32);
+    let ten = 10_f64.powi(power.abs());
+    // Both are exact up to here: whole numbers of 15 digits, and so many powers of ten. What is made of them is rounded once.
+    let exact = value != 0.0 && power.abs() <= 22;
+    exact.then(|| match power >= 0 {
+        true => (value * ten).round() / ten,
+        false => (value / ten).round() * ten,
+    })
 }
 
 impl fmt::Display for UnitConflict {
@@ -270,6 +286,28 @@ mod tests {
 
     fn unit(text: &str) -> NamedUnit {
         NamedUnit::parse(text).unwrap()
+    }
+
+    #[test]
+    fn digits_in_a_unit_are_those_of_its_text() {
+        for text in ["mm", "um", "rpm", "deg", "degC", "kN", "min"] {
+            let unit = unit(text).unit();
+            for k in 1..4000_u64 {
+                let noise = k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+                let mantissa = f64::from_bits(0x3ff0_0000_0000_0000 | noise >> 12) - 1.5;
+                let written = 0.1 * (k % 700) as f64;
+                for si in [
+                    mantissa * 10_f64.powi((k % 30) as i32 - 20),
+                    unit.to_si(written),
+                ] {
+                    let value = unit.from_si(si);
+                    let short: f64 = format!("{value:.14e}").parse().unwrap();
+                    if unit.to_si(short).to_bits() == si.to_bits() {
+                        assert_eq!(in_unit(si, unit), short, "{si} in {text}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]
