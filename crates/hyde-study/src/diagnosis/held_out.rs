@@ -35,6 +35,8 @@ pub struct Worse {
 
 /// A finding that does not hold on the records held out.
 pub struct Refused {
+    /// The number of its hypothesis; that of a law is behind the last of the inquiry.
+    pub hypothesis: usize,
     /// Its name, with its size as it was found.
     pub effect: String,
     /// Where it acts.
@@ -73,14 +75,16 @@ impl Worse {
     }
 }
 
-/// Drops findings until no record held out gets worse by those that are left: the errors of what is left, and what was
-/// dropped.
+/// The errors of what is left of a diagnosis, and what was dropped.
+pub(super) type Agreed = (Vec<RecordErrors>, Vec<Refused>);
+
+/// Drops findings until no record held out gets worse by those that are left.
 pub fn agreed(
     calibration: &Calibration,
     candidates: &[Candidate],
     inquiry: &Inquiry<'_>,
     found: &mut Diagnosis,
-) -> Result<(Vec<RecordErrors>, Vec<Refused>), Unsupported> {
+) -> Result<Agreed, Unsupported> {
     let of = |found: &Diagnosis, model: &FoundModel| errors(calibration, candidates, found, model);
     let mut refused = Vec::new();
     let mut here = of(found, &found.model())?;
@@ -109,6 +113,7 @@ pub fn agreed(
         let hypothesis = inquiry.hypotheses.get(finding.hypothesis).or(law);
         if let Some(Hypothesis { effect, site, .. }) = hypothesis {
             refused.push(Refused {
+                hypothesis: finding.hypothesis,
                 effect: effect.clone(),
                 site: site.clone(),
                 size: finding.size.clone(),

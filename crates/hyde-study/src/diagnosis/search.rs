@@ -1,10 +1,11 @@
 //! [`search`]: looks for the effects that a model lacks.
 
-use super::{Diagnosed, agreed};
+use super::Diagnosed;
+use super::held_out::{Agreed, Refused, agreed};
 use crate::{Calibration, unknown, unobservable};
 use hyde_calibrate::{
-    Cause, CommandTiming, Hypothesis, Inquiry, Knob, Problem, Site, Solution, Thresholds,
-    Unsupported, fitted_parameters, moved_columns,
+    Cause, CommandTiming, Diagnosis, Hypothesis, Inquiry, Knob, Problem, Site, Solution,
+    Thresholds, Unsupported, fitted_parameters, moved_columns,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Laws};
 use hyde_diag::Diagnostic;
@@ -74,8 +75,7 @@ fn searched<T>(
             barred: &[],
             thresholds,
         };
-        let mut found = hyde_calibrate::diagnose(&inquiry)?;
-        let agreed = agreed(calibration, &candidates, &inquiry, &mut found)?;
+        let (found, agreed) = diagnosed(calibration, &candidates, &inquiry)?;
         let count = if curves { found.findings.len() } else { 0 };
         let curves = (0..count).map(|number| found.curve(&inquiry, number));
         let curves: Vec<_> = curves.collect();
@@ -108,6 +108,33 @@ fn searched<T>(
         commands,
         ..told
     })))
+}
+
+/// What the search finds, as far as it holds on the records held out. A law that does not may have taken the place of effects
+/// that do: where nothing is left, the search begins again without laws.
+fn diagnosed(
+    calibration: &Calibration,
+    candidates: &[Candidate],
+    inquiry: &Inquiry<'_>,
+) -> Result<(Diagnosis, Agreed), Unsupported> {
+    let search = |inquiry: &Inquiry<'_>| {
+        let mut found = hyde_calibrate::diagnose(inquiry)?;
+        let agreed = agreed(calibration, candidates, inquiry, &mut found)?;
+        Ok((found, agreed))
+    };
+    let (found, mut told) = search(inquiry)?;
+    let is_law = |own: &Refused| own.hypothesis >= inquiry.hypotheses.len();
+    if found.findings.is_empty() && told.1.iter().any(is_law) {
+        let (again, (errors, refused)) = search(&Inquiry {
+            sites: &[],
+            ..*inquiry
+        })?;
+        if !again.findings.is_empty() {
+            told.1.extend(refused);
+            return Ok((again, (errors, told.1)));
+        }
+    }
+    Ok((found, told))
 }
 
 /// Moves columns of commands that were recorded at other times than they acted, in all records: everything that follows would
