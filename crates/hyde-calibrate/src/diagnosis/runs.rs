@@ -63,7 +63,7 @@ impl Runs<'_> {
             let p = recording.parameters(self.program, &set);
             let own = self.on_track(number, (&set, &p), |track| {
                 along(track, recording, &p, &mut forces, each);
-                Some(track.route.innovations.clone())
+                track.route.innovations.clone()
             });
             innovations.push(own?);
             adding.end();
@@ -81,7 +81,7 @@ impl Runs<'_> {
             let mut forces = Slopes::new(self.program, &own);
             let p = recording.parameters(self.program, &set);
             let own = self.on_track(number, (&set, &p), |track| {
-                Some(changes(track, recording, &p, &mut forces))
+                changes(track, recording, &p, &mut forces)
             });
             for (column, change) in columns.iter_mut().zip(own?.column_iter()) {
                 column.extend(change.iter());
@@ -96,17 +96,17 @@ impl Runs<'_> {
         &self,
         number: usize,
         (set, p): (&[(usize, f64)], &[f64]),
-        make: impl FnOnce(&Track<'_>) -> Option<T>,
+        make: impl FnOnce(&Track<'_>) -> T,
     ) -> Option<T> {
         let (known, recording) = (&self.tracks[number], &self.ground.recordings[number]);
         if known.serves(self.program, p) {
-            return make(known);
+            return Some(make(known));
         }
         let own = match known.carrying(self.program, recording, set) {
             Some(own) => own,
             None => Track::new(self.program, recording, self.ground.observer, set).ok()?,
         };
-        make(&own)
+        Some(make(&own))
     }
 
     /// Every shape, and what its sizes change, a little above 0: many are nothing but a corner at 0.

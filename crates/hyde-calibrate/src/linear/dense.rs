@@ -116,25 +116,8 @@ impl WithSimd for AddLowRankAcross<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         for (other, column) in self.others.zip(self.columns) {
             for (u, v) in self.pairs.clone() {
-                let (x, x_rest) = S::as_simd_f64s(&other[..v.len()]);
-                let (v, v_rest) = S::as_simd_f64s(v);
-                let mut sum = simd.splat_f64s(0.0);
-                for (&x, &v) in x.iter().zip(v) {
-                    sum = simd.mul_add_e_f64s(x, v, sum);
-                }
-                let mut asked = simd.reduce_sum_f64s(sum);
-                for (x, v) in x_rest.iter().zip(v_rest) {
-                    asked += x * v;
-                }
-                let (out, out_rest) = S::as_mut_simd_f64s(&mut column[..u.len()]);
-                let (u, u_rest) = S::as_simd_f64s(u);
-                let wide = simd.splat_f64s(asked);
-                for (out, &u) in out.iter_mut().zip(u) {
-                    *out = simd.mul_add_e_f64s(wide, u, *out);
-                }
-                for (out, &u) in out_rest.iter_mut().zip(u_rest) {
-                    *out += asked * u;
-                }
+                let asked = add_dot(simd, 0.0, &other[..v.len()], v);
+                add_times(simd, asked, u, &mut column[..u.len()]);
             }
         }
     }
@@ -165,29 +148,44 @@ impl WithSimd for AddLowRank<'_> {
                 let each = self.asked.iter_mut().zip(w);
                 each.for_each(|(asked, w)| *asked += w * given);
             }
-            let (x, x_rest) = S::as_mut_simd_f64s(&mut column[..self.rows]);
+            let head = &mut column[..self.rows];
             for (asked, v) in self.asked.iter_mut().zip(self.v.chunks_exact(self.rows)) {
-                let (v, v_rest) = S::as_simd_f64s(v);
-                let mut sum = simd.splat_f64s(0.0);
-                for (&x, &v) in x.iter().zip(v) {
-                    sum = simd.mul_add_e_f64s(x, v, sum);
-                }
-                *asked += simd.reduce_sum_f64s(sum);
-                for (x, v) in x_rest.iter().zip(v_rest) {
-                    *asked += x * v;
-                }
+                *asked = add_dot(simd, *asked, head, v);
             }
             for (&asked, u) in self.asked.iter().zip(self.u.chunks_exact(self.rows)) {
-                let (u, u_rest) = S::as_simd_f64s(u);
-                let wide = simd.splat_f64s(asked);
-                for (x, &u) in x.iter_mut().zip(u) {
-                    *x = simd.mul_add_e_f64s(wide, u, *x);
-                }
-                for (x, &u) in x_rest.iter_mut().zip(u_rest) {
-                    *x += asked * u;
-                }
+                add_times(simd, asked, u, head);
             }
         }
+    }
+}
+
+/// A sum and the product of two vectors on top of it.
+#[inline(always)]
+fn add_dot<S: Simd>(simd: S, sum: f64, x: &[f64], v: &[f64]) -> f64 {
+    let (x, x_rest) = S::as_simd_f64s(x);
+    let (v, v_rest) = S::as_simd_f64s(v);
+    let mut wide = simd.splat_f64s(0.0);
+    for (&x, &v) in x.iter().zip(v) {
+        wide = simd.mul_add_e_f64s(x, v, wide);
+    }
+    let mut sum = sum + simd.reduce_sum_f64s(wide);
+    for (x, v) in x_rest.iter().zip(v_rest) {
+        sum += x * v;
+    }
+    sum
+}
+
+/// Adds a number times a vector to another.
+#[inline(always)]
+fn add_times<S: Simd>(simd: S, times: f64, u: &[f64], out: &mut [f64]) {
+    let (out, out_rest) = S::as_mut_simd_f64s(out);
+    let (u, u_rest) = S::as_simd_f64s(u);
+    let wide = simd.splat_f64s(times);
+    for (out, &u) in out.iter_mut().zip(u) {
+        *out = simd.mul_add_e_f64s(wide, u, *out);
+    }
+    for (out, &u) in out_rest.iter_mut().zip(u_rest) {
+        *out += times * u;
     }
 }
 

@@ -4,8 +4,8 @@
 //! error of the states    eps+ = exp(A T) (I - K C) eps + forcing        change of innovations    -(C eps + dh)
 //! ```
 //! A change forces the equations by what it adds to their residual where the plant is, taken linearly over a row, and the
-//! channels by dh. Both are differences by the parameter ([`Own`]) or derivatives ([`Slopes`]), of kernels alone. So a direction costs a few evaluations and a
-//! column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
+//! channels by dh. Both are differences by the parameter ([`Own`]) or derivatives ([`Slopes`]), of kernels alone. So a
+//! direction costs a few evaluations and a column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
 //! right to first order, for its force does not jump where it begins and ends to stick, and what has stuck in between forgets
 //! its speed; of contacts it is a part. Modes that begin within a row act from there on, and what bends has the derivatives
 //! of where the plant is (`track/splitting.rs`).

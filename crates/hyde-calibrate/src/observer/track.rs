@@ -1,8 +1,8 @@
 //! [`Track`]: where an observer takes the plant along a record, row by row: what tangents are differentiated along.
 //!
 //! An effect of size 0 changes no run. So one track serves every effect that brings no modes or delays of its own: its
-//! equations are evaluated where the model without it has been ([`Track::serves`]), and where they are linear its own
-//! unknowns are carried along ([`Track::carrying`]).
+//! equations are evaluated where the model without it has been ([`Track::serves`]), and where they are linear, or each state
+//! flows on its own, its own unknowns are carried along ([`Track::carrying`]).
 
 mod bends;
 mod carried;

@@ -1,6 +1,6 @@
 //! [`Track::carrying`]: what an effect of size 0 brings along. It does not act on the axis, but the axis drives it: a body on
-//! a spring swings behind the table, whatever it weighs. Where its equations are linear in its own unknowns they are solved
-//! along the track, and no set of shapes needs a run of the axis.
+//! a spring swings behind the table, whatever it weighs. Where its equations are linear in its own unknowns, or each of its
+//! states flows on its own, they are solved along the track, and no set of shapes needs a run of the axis.
 //!
 //! ```text
 //! over a row      x' = A x + g
