@@ -6,6 +6,7 @@
 
 mod bends;
 mod carried;
+mod counterparts;
 mod equations;
 mod splitting;
 
@@ -18,6 +19,7 @@ use bends::Bends;
 pub(crate) use bends::Passing;
 use carried::Carried;
 pub(crate) use carried::Vectors;
+use counterparts::{Counterparts, names};
 use hyde_program::{Point, Program, Workspace, Wrt};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -152,10 +154,10 @@ impl<'p> Track<'p> {
     /// Whether another program has the same unknowns, equations, modes and memory with some parameters, so that it can be
     /// evaluated here.
     pub(crate) fn serves(&self, other: &Program, p: &[f64]) -> bool {
-        let positions: Vec<usize> = (0..other.n_unknowns).collect();
+        let equations: Vec<usize> = (0..other.n_unknowns).collect();
         self.moves_as(other)
             && names(self.route.program) == names(other)
-            && self.has_equations_of(other, p, &positions, &positions)
+            && self.has_equations_of(other, p, &equations, &Counterparts::same(equations.len()))
     }
 
     /// Whether another program has the same modes and memory.
@@ -218,13 +220,13 @@ impl<'p> Track<'p> {
     }
 
     /// Whether some equations of another program, with some parameters, are those of the route, one by one, by their
-    /// derivatives where it is linear; its unknowns have these positions.
+    /// derivatives where it is linear.
     fn has_equations_of(
         &self,
         other: &Program,
         p: &[f64],
         equations: &[usize],
-        positions: &[usize],
+        counterparts: &Counterparts,
     ) -> bool {
         let route = &self.route;
         let Some(first) = route.configurations.first() else {
@@ -233,17 +235,20 @@ impl<'p> Track<'p> {
         let mut there = Vectors::default();
         there.reach(other.n_unknowns);
         let at = first.made.point(p);
-        there.take(positions, at);
+        counterparts.put(at, &mut there);
         let own = derivatives(route.program, first.made.point(&route.p));
         let others = derivatives(other, there.in_place(at));
         own.iter().zip(&others).all(|(own, others)| {
-            let others = others.select_rows(equations).select_columns(positions);
+            let others = others
+                .select_rows(equations)
+                .select_columns(&counterparts.positions);
             let same = |row: usize| {
                 let (own, other) = (own.row(row), others.row(row));
                 let near = SAME * own.amax();
+                let pairs = own.iter().zip(other.iter().zip(&counterparts.signs));
                 // Where a power is steepest it has no slope, and tells nothing.
-                let apart = |(a, b): (&f64, &f64)| (a - b).abs() > near;
-                !own.iter().zip(other.iter()).any(apart)
+                let mut apart = pairs.map(|(own, (other, sign))| (own - sign * other).abs() > near);
+                !apart.any(|apart| apart)
             };
             own.shape() == others.shape() && (0..own.nrows()).all(same)
         })
@@ -294,12 +299,6 @@ impl Route<'_> {
             p,
         }
     }
-}
-
-/// The names of the unknowns of a program.
-fn names(program: &Program) -> Vec<String> {
-    let each = 0..program.n_unknowns;
-    each.map(|number| program.unknown_name(number)).collect()
 }
 
 /// Keeps where a plant is: the numbers of its modes and of its memory.

@@ -10,8 +10,9 @@
 //!                 2010, 209, section 2.4): springs that slip
 //! ```
 
+use super::Track;
+use super::counterparts::Counterparts;
 use super::equations::{Equations, Flow};
-use super::{Track, names};
 use crate::linear::{phi1, set_product};
 use crate::observer::over_record::When;
 use crate::plant::Plant;
@@ -26,8 +27,8 @@ const NEAR: f64 = 1e-3;
 
 /// Unknowns that an effect brings, along a track.
 pub(crate) struct Carried {
-    /// Where the unknowns of the route's program are in the vector of this one.
-    pub(super) positions: Vec<usize>,
+    /// The unknowns of the route's program in the vector of this one.
+    pub(super) counterparts: Counterparts,
     /// Where its own are.
     pub(super) own: Vec<usize>,
     /// Its equations that are those of the route's program, in the order of these.
@@ -69,9 +70,9 @@ impl Carried {
     /// A point of the route in the vectors of the program, with its own unknowns and their rates.
     fn placed<'a>(&self, values: &[f64], at: Point<'a>, room: &'a mut Vectors) -> Point<'a> {
         let (y, yp) = values.split_at(self.own.len());
-        room.reach(self.positions.len() + self.own.len());
-        room.take(&self.positions, at);
-        room.take(&self.own, Point { y, yp, ..at });
+        room.reach(self.counterparts.positions.len() + self.own.len());
+        self.counterparts.put(at, room);
+        room.put(&self.own, y, yp);
         room.in_place(at)
     }
 
@@ -88,8 +89,8 @@ impl Carried {
 }
 
 impl<'p> Track<'p> {
-    /// The track of a program that has all unknowns of this one, and some of its own that do not act on them with parameters
-    /// `set`; `None` where it is not so, or where they are not linear.
+    /// The track of a program that has all unknowns of this one, be it under other names, and some of its own that do not act
+    /// on them with parameters `set`; `None` where it is not so, or where they are not linear.
     pub(crate) fn carrying(
         &self,
         program: &'p Program,
@@ -99,14 +100,32 @@ impl<'p> Track<'p> {
         if self.carried.is_some() || !self.moves_as(program) {
             return None;
         }
-        let positions = positions(self.route.program, program)?;
         let start = Plant::new(program, recording, set).ok()?;
         let (p, step_s) = (start.p, recording.step_s);
-        let equations = Equations::new(self, program, &positions, &start.places, &p, step_s)?;
-        let of_axis: Vec<usize> = (0..program.n_unknowns)
+        let counterparts = Counterparts::of(self, program)?;
+        if !counterparts.have_rates_alike(&self.route.places, &start.places) {
+            return None;
+        }
+        let carried = |counterparts, own, equations, values| Self {
+            route: Arc::clone(&self.route),
+            carried: Some(Carried {
+                counterparts,
+                own,
+                equations,
+                values,
+            }),
+        };
+        let all: Vec<usize> = (0..program.n_unknowns).collect();
+        if program.n_unknowns == self.route.program.n_unknowns {
+            let same = self.has_equations_of(program, &p, &all, &counterparts);
+            return same.then(|| carried(counterparts, Vec::new(), all, Vec::new()));
+        }
+        let equations = Equations::new(self, program, &counterparts, &start.places, &p, step_s)?;
+        let of_axis: Vec<usize> = all
+            .into_iter()
             .filter(|number| !equations.rows.contains(number))
             .collect();
-        if !self.has_equations_of(program, &p, &of_axis, &positions) {
+        if !self.has_equations_of(program, &p, &of_axis, &counterparts) {
             return None;
         }
         let states = &equations.own[..equations.states];
@@ -122,7 +141,7 @@ impl<'p> Track<'p> {
         for row in 0..count {
             for when in [When::Before, When::After] {
                 let at = self.route.point(row, when, &p);
-                end.take(&positions, at);
+                counterparts.put(at, &mut end);
                 if row > 0 && matches!(when, When::Before) {
                     solver.step(&mut x, &begin, &mut end, at, step_s);
                 }
@@ -132,24 +151,8 @@ impl<'p> Track<'p> {
                 std::mem::swap(&mut begin, &mut end);
             }
         }
-        Some(Self {
-            route: Arc::clone(&self.route),
-            carried: Some(Carried {
-                own: equations.own,
-                equations: of_axis,
-                positions,
-                values,
-            }),
-        })
+        Some(carried(counterparts, equations.own, of_axis, values))
     }
-}
-
-/// Where each unknown of a program is in another that has them all and more.
-fn positions(own: &Program, other: &Program) -> Option<Vec<usize>> {
-    let all = names(other);
-    let at = |name: &String| all.iter().position(|known| known == name);
-    let found: Option<Vec<usize>> = names(own).iter().map(at).collect();
-    found.filter(|_| other.n_unknowns > own.n_unknowns)
 }
 
 /// Unknowns and their rates.
@@ -166,10 +169,9 @@ impl Vectors {
         self.yp.resize(count, 0.0);
     }
 
-    /// Takes over those of a shorter vector, to their positions.
-    pub(super) fn take(&mut self, positions: &[usize], at: Point<'_>) {
-        let values = at.y.iter().zip(at.yp);
-        for (&position, (y, yp)) in positions.iter().zip(values) {
+    /// Puts some to their positions.
+    fn put(&mut self, positions: &[usize], y: &[f64], yp: &[f64]) {
+        for (&position, (y, yp)) in positions.iter().zip(y.iter().zip(yp)) {
             (self.y[position], self.yp[position]) = (*y, *yp);
         }
     }

@@ -7,6 +7,7 @@
 //! They are looked at wherever modes are new and now and then, with the own unknowns at 0 and elsewhere.
 
 use super::carried::Vectors;
+use super::counterparts::Counterparts;
 use super::{Passed, Track};
 use crate::linear::steps;
 use crate::observer::over_record::When;
@@ -56,17 +57,14 @@ impl<'p> Equations<'p> {
     pub(super) fn new(
         track: &Track<'_>,
         program: &'p Program,
-        positions: &[usize],
+        counterparts: &Counterparts,
         places: &Places,
         p: &[f64],
         step_s: f64,
     ) -> Option<Self> {
         let mut is_own = vec![true; program.n_unknowns];
-        for (number, &position) in positions.iter().enumerate() {
+        for &position in &counterparts.positions {
             is_own[position] = false;
-            if places.differential[position] != track.route.places.differential[number] {
-                return None;
-            }
         }
         let chosen = |list: &[usize], wanted: bool| -> Vec<usize> {
             let list = list.iter().copied();
@@ -74,7 +72,7 @@ impl<'p> Equations<'p> {
         };
         let own_states = chosen(&places.states, true);
         let own = [own_states.as_slice(), &chosen(&places.algebraics, true)].concat();
-        let derivatives = Derivatives::new(track, program, positions, &own, p)?;
+        let derivatives = Derivatives::new(track, program, counterparts, &own, p)?;
         let (mut constant, mut linear) = (true, true);
         let (mut drivers, mut uneven) = (BTreeSet::new(), BTreeSet::new());
         for (number, entry) in derivatives.entries.iter().enumerate() {
@@ -147,7 +145,7 @@ impl<'p> Derivatives<'p> {
     fn new(
         track: &Track<'_>,
         program: &'p Program,
-        positions: &[usize],
+        counterparts: &Counterparts,
         own: &[usize],
         p: &[f64],
     ) -> Option<Self> {
@@ -158,7 +156,7 @@ impl<'p> Derivatives<'p> {
                 let at = track.route.point(row, When::After, p);
                 let mut there = Vectors::default();
                 there.reach(n);
-                there.take(positions, at);
+                counterparts.put(at, &mut there);
                 for (number, &place) in own.iter().enumerate() {
                     // Any numbers without relation to each other.
                     let part = |shift: f64| size * (12.9898 * number as f64 + shift).sin();
