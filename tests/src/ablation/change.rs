@@ -69,16 +69,16 @@ mod tests {
     #[test]
     fn a_name_gives_thresholds_and_values() {
         let method = Thresholds::default();
-        let one = Change::read("margin").unwrap().thresholds;
+        let one = Change::read("retries").unwrap().thresholds;
         let expected = Thresholds {
-            margin: 1.0,
+            retries: 0,
             ..method
         };
         assert_eq!(one, expected);
-        let two = Change::read("margin=3+few=1").unwrap().thresholds;
-        assert_eq!((two.margin, two.few), (3.0, 1));
+        let two = Change::read("too_good=5+few=1").unwrap().thresholds;
+        assert_eq!((two.too_good, two.few), (5.0, 1));
         assert_eq!(two.chance.to_bits(), method.chance.to_bits());
-        assert!(Change::read("margin+unheard").is_err());
+        assert!(Change::read("retries+unheard").is_err());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! linear, or each state flows on its own, they are solved along the run of the model without it; what follows is what a run of
 //! the whole model tells.
 
-use crate::driven_body::{SLOW, diagnosed};
+use crate::driven_body::{SLOW, diagnosed, diagnosed_on_guide};
 use serde_json::Value;
 
 /// A body on a spring, of a name, its equation with another term.
@@ -37,6 +37,44 @@ end {name};
     )
 }
 
+/// A force that goes with the square of the time, of a name, with something beside it that does not act.
+fn push(name: &str, beside: &str) -> String {
+    format!(
+        "effect {name} on Rail
+  size Force F = 0 in -10 .. 10 [N];
+  add a.f = F*(0.25 [1/s]*time)^2{beside};
+end {name};
+"
+    )
+}
+
+/// Cosines of 3 and 31 rad/s as a force, and the velocity of 1 kg under it and under the force that only `Slow` explains.
+fn force_and_velocity(t: f64) -> (f64, f64) {
+    let u = (3.0 * t).cos() + 0.5 * (31.0 * t).cos();
+    let v =
+        (3.0 * t).sin() / 3.0 + 0.5 * (31.0 * t).sin() / 31.0 + 0.4 * (1.0 - (7.0 * t).cos()) / 7.0;
+    (u, v)
+}
+
+/// Compares what two effects promise that were tried.
+fn promise_alike(found: &Value, carried: &str, run: &str, close: f64) {
+    let rejected = found["rejected"].as_array().unwrap();
+    let of = |name: &str| -> &Value {
+        let own = rejected.iter().find(|one| one["effect"] == name);
+        own.unwrap_or_else(|| panic!("{name}: {}", found["sentence"]))
+    };
+    let (carried, run) = (of(carried), of(run));
+    let same = |a: &Value, b: &Value| {
+        let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+        assert!(b > 0.0 && (a / b - 1.0).abs() < close, "{a} {b}");
+    };
+    same(&carried["score"], &run["score"]);
+    same(
+        &carried["smallest_seen"]["value"],
+        &run["smallest_seen"]["value"],
+    );
+}
+
 #[test]
 fn what_an_effect_brings_is_carried_along_as_in_a_run_of_its_own() {
     // Beside each effect the same with a term that does nothing but bend or couple its equations: that one needs runs of its own.
@@ -49,19 +87,8 @@ fn what_an_effect_brings_is_carried_along_as_in_a_run_of_its_own() {
         bristles("CoupledSprings", 3, " + 1e-9 [1/s]*y"),
         SLOW.to_owned(),
     ];
-    let found = diagnosed(&effects.each_ref().map(String::as_str), |t| {
-        let u = (3.0 * t).cos() + 0.5 * (31.0 * t).cos();
-        // Its integral with a mass of 1 kg, and that of a force that only Slow explains.
-        let v = (3.0 * t).sin() / 3.0
-            + 0.5 * (31.0 * t).sin() / 31.0
-            + 0.4 * (1.0 - (7.0 * t).cos()) / 7.0;
-        (u, v)
-    });
-    let rejected = found["rejected"].as_array().unwrap();
-    let of = |name: &str| -> &Value {
-        let own = rejected.iter().find(|one| one["effect"] == name);
-        own.unwrap_or_else(|| panic!("{name}: {}", found["sentence"]))
-    };
+    let effects = effects.each_ref().map(String::as_str);
+    let found = diagnosed(&effects, force_and_velocity);
     // A constant flow is exact but for what drives it within a row; a bristle is taken as it is in the middle of a row, and a
     // spring a few times a row.
     for (carried, run, close) in [
@@ -69,15 +96,20 @@ fn what_an_effect_brings_is_carried_along_as_in_a_run_of_its_own() {
         ("Bristles", "CoupledBristles", 1e-3),
         ("Springs", "CoupledSprings", 1e-3),
     ] {
-        let (carried, run) = (of(carried), of(run));
-        let same = |a: &Value, b: &Value| {
-            let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
-            assert!(b > 0.0 && (a / b - 1.0).abs() < close, "{a} {b}");
-        };
-        same(&carried["score"], &run["score"]);
-        same(
-            &carried["smallest_seen"]["value"],
-            &run["smallest_seen"]["value"],
-        );
+        promise_alike(&found, carried, run, close);
     }
+}
+
+#[test]
+fn an_effect_that_changes_which_of_two_equal_forces_is_unknown_promises_what_a_run_tells() {
+    // Without an effect the force on the body is that of the guide; beside one, either may be the unknown. A relation that an
+    // effect brings, though it never changes, needs a run of its own.
+    let effects = [
+        push("Push", ""),
+        push("WatchedPush", "*(if time > 1000 [s] then 2 else 1)"),
+        SLOW.to_owned(),
+    ];
+    let effects = effects.each_ref().map(String::as_str);
+    let found = diagnosed_on_guide(&effects, force_and_velocity);
+    promise_alike(&found, "Push", "WatchedPush", 1e-6);
 }

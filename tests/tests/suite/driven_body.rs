@@ -43,9 +43,28 @@ end Slow;
 /// The report of a diagnosis with some effects, of 4 s of the force in N and of the velocity in m/s at times in s; the velocity
 /// is measured with noise of 1 mm/s.
 pub(crate) fn diagnosed(effects: &[&str], force_and_velocity: impl Fn(f64) -> (f64, f64)) -> Value {
+    diagnosed_of(MODEL, effects, force_and_velocity)
+}
+
+/// The same of a body on a guide with a friction of 0.2 N.
+pub(crate) fn diagnosed_on_guide(
+    effects: &[&str],
+    force_and_velocity: impl Fn(f64) -> (f64, f64),
+) -> Value {
+    let on_guide = MODEL
+        .replace("  Rail a;\n", "  Rail a;\n  Guide guide(F = 0.2 [N]);\n")
+        .replace("equation\n", "equation\n  connect(a, guide.a);\n");
+    diagnosed_of(&on_guide, effects, force_and_velocity)
+}
+
+fn diagnosed_of(
+    model: &str,
+    effects: &[&str],
+    force_and_velocity: impl Fn(f64) -> (f64, f64),
+) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let begin = "package effects;\nimport SI.*;\nimport Translational.*;\n";
-    let file = [&[begin, MODEL], effects].concat().join("\n");
+    let file = [&[begin, model], effects].concat().join("\n");
     write(&folder.path().join("effects.hyde"), &file);
     let mut random = Random(5);
     let mut text = "t [s],u [N],v [m/s]\n".to_owned();

@@ -18,6 +18,7 @@ use super::projection::Projection;
 use super::stage::{Ground, flat};
 use super::trial::Trial;
 use crate::fit::rows_of_a_block;
+use hyde_signal::statistics::distributions::chi_squared;
 use nalgebra::DVector;
 
 /// A hypothesis that the records cannot tell from the one taken in.
@@ -63,9 +64,9 @@ pub(super) fn alternative(
     let rest = not_repeated(ground, one, other);
     let gate = one.gate(gates);
     let experiment = telling(ground, one, &rest, gate);
-    // Noise gives each of its constants a gain of 1 on average.
+    // What noise gives to its constants.
     let thresholds = ground.thresholds;
-    let by_chance = thresholds.margin * other.freedoms as f64 * one.inflation;
+    let by_chance = chi_squared(other.freedoms.max(1), thresholds.chance) * one.inflation;
     let same = rest.norm_squared() <= by_chance.min(thresholds.negligible * one.gain);
     let effect = |trial: &Trial| &hypotheses[trial.hypothesis].effect;
     let relation = match same {

@@ -107,7 +107,7 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
         };
         let gained = before - after;
         trial.fold_gain = Some(gained);
-        if gained < gate.max(gates.material()) {
+        if gained < gates.unseen(trial.freedoms, trial.inflation) {
             trial.rejected = Some(Rejection::Folds);
         } else {
             passed = Some(passed.unwrap_or(trial.gain));

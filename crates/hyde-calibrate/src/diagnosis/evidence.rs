@@ -1,6 +1,6 @@
 //! What counts as evidence: [`Gates`], which gains have to reach, and [`excess`], what is left to explain.
 //!
-//! The gate of a gain is twice what the best of all nodes tried would reach by chance in one of a hundred records without
+//! The gate of a gain is what the best of all nodes tried would reach by chance in one of a hundred records without
 //! any effect: the quantile of chi squared for the effect's sizes and shapes, after Bonferroni. It grows with what
 //! innovations tell less than independent ones. A gain on what was not fitted is also to be material: a part of the
 //! number of innovations.
@@ -27,8 +27,18 @@ impl Gates {
     /// What a gain of a hypothesis with so many sizes and shapes has to reach.
     #[must_use]
     pub fn gain(&self, freedoms: usize) -> f64 {
-        let Thresholds { chance, margin, .. } = self.thresholds;
-        margin * distributions::chi_squared(freedoms.max(1), chance / self.tried.max(1) as f64)
+        let chance = self.thresholds.chance / self.tried.max(1) as f64;
+        distributions::chi_squared(freedoms.max(1), chance)
+    }
+
+    /// What it has to gain on halves of the records by fits to the other halves, with a gate that is so much inflated. A fit
+    /// gains one a freedom on what it was fitted to by chance; fits to halves, which scatter twice as much, lose two on both
+    /// others.
+    #[must_use]
+    pub fn unseen(&self, freedoms: usize, inflation: f64) -> f64 {
+        let by_chance = 3.0 * freedoms as f64;
+        let gate = (self.gain(freedoms) - by_chance) * inflation;
+        gate.max(self.material())
     }
 
     /// What a gain over a model has to reach that a single number is worth.

@@ -67,10 +67,12 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
         let nodes = [at(first, a, both), at(second, b, Vec::new())];
         let fitted = together(ground, stage, scanner.hypotheses, &nodes, scanner.build)?;
         let own = stage.varied.len()..fitted.varied.len();
-        let gate = gates.gain(own.len()) * inflation_of(&fitted.solution, own).max(inflation);
+        let freedoms = own.len();
+        let inflation = inflation_of(&fitted.solution, own).max(inflation);
+        let gate = gates.gain(freedoms) * inflation;
         let unseen = plain - unseen(ground, &fitted)?;
         let gain = fitted.solution.gain_over(&stage.solution);
-        let passes = gain >= gate && unseen >= gate.max(gates.material());
+        let passes = gain >= gate && unseen >= gates.unseen(freedoms, inflation);
         passes.then_some((unseen, fitted))
     });
     let mut fitted: Vec<(f64, Stage)> = fitted.collect();

@@ -84,10 +84,6 @@ thresholds! {
     chance: f64 = 0.01,
         because "one false alarm in a hundred data sets is acceptable; the figure `false_alarms_of_100` counts them",
         removed 0.5;
-    /// Factor between a required improvement and what the best of all tried points reaches by chance.
-    margin: f64 = 2.0,
-        because "innovations are neither exactly normal nor independent, as the chi-squared distribution assumes",
-        removed 1.0;
     /// Improvement in cross-validation per innovation, and per part explained by an effect with modes.
     material: f64 = crate::observer::MATERIAL,
         because "an improvement below it changes the error of a prediction by less than 0.1 %, however significant it is",

@@ -205,9 +205,9 @@ impl Fitting<'_> {
     pub(super) fn judged(&self, mut trial: Trial, own: Selected) -> Option<(Trial, FoundLaw)> {
         let (ground, stage) = (self.inquiry.ground(), self.stage);
         let gates = own.gates(self.gates);
-        let gate = gates.gain(own.law.freedoms()) * trial.inflation;
+        let gate = gates.unseen(own.law.freedoms(), trial.inflation);
         let fold_gain = unseen(&ground, stage)? - unseen(&ground, &trial.stage)?;
-        if fold_gain < gate.max(gates.material()) {
+        if fold_gain < gate {
             return None;
         }
         trial.fold_gain = Some(fold_gain);
