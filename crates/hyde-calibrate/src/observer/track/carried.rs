@@ -101,13 +101,24 @@ impl<'p> Track<'p> {
             return None;
         }
         let start = Plant::new(program, recording, set).ok()?;
-        let (p, step_s) = (start.p, recording.step_s);
-        let counterparts = Counterparts::of(self, program)?;
-        if !counterparts.have_rates_alike(&self.route.places, &start.places) {
+        let possible = Counterparts::possible(self.route.program, program);
+        let mut possible = possible.into_iter();
+        possible.find_map(|counterparts| self.carrying_beside(counterparts, program, &start))
+    }
+
+    /// The same with these counterparts of the unknowns, from where the model starts.
+    fn carrying_beside(
+        &self,
+        counterparts: Counterparts,
+        program: &'p Program,
+        start: &Plant<'p>,
+    ) -> Option<Self> {
+        let (route, p) = (&self.route, &start.p);
+        if !counterparts.have_rates_alike(&route.places, &start.places) {
             return None;
         }
         let carried = |counterparts, own, equations, values| Self {
-            route: Arc::clone(&self.route),
+            route: Arc::clone(route),
             carried: Some(Carried {
                 counterparts,
                 own,
@@ -116,34 +127,34 @@ impl<'p> Track<'p> {
             }),
         };
         let all: Vec<usize> = (0..program.n_unknowns).collect();
-        if program.n_unknowns == self.route.program.n_unknowns {
-            let same = self.has_equations_of(program, &p, &all, &counterparts);
+        if program.n_unknowns == route.program.n_unknowns {
+            let same = self.has_equations_of(program, p, &all, &counterparts);
             return same.then(|| carried(counterparts, Vec::new(), all, Vec::new()));
         }
-        let equations = Equations::new(self, program, &counterparts, &start.places, &p, step_s)?;
+        let equations = Equations::new(self, program, &counterparts, &start.places, p)?;
         let of_axis: Vec<usize> = all
             .into_iter()
             .filter(|number| !equations.rows.contains(number))
             .collect();
-        if !self.has_equations_of(program, &p, &of_axis, &counterparts) {
+        if !self.has_equations_of(program, p, &of_axis, &counterparts) {
             return None;
         }
         let states = &equations.own[..equations.states];
         let mut x: Vec<f64> = states.iter().map(|&own| start.y[own]).collect();
-        let count = self.route.rows.len();
+        let count = route.rows.len();
         let mut values = Vec::with_capacity(4 * count * equations.own.len());
         let mut end = Vectors {
-            y: start.y,
-            yp: start.yp,
+            y: start.y.clone(),
+            yp: start.yp.clone(),
         };
         let mut begin = end.clone();
-        let mut solver = Solver::new(&equations, start.workspace);
+        let mut solver = Solver::new(&equations, Workspace::new(program.n_work));
         for row in 0..count {
             for when in [When::Before, When::After] {
-                let at = self.route.point(row, when, &p);
+                let at = route.point(row, when, p);
                 counterparts.put(at, &mut end);
                 if row > 0 && matches!(when, When::Before) {
-                    solver.step(&mut x, &begin, &mut end, at, step_s);
+                    solver.step(&mut x, &begin, &mut end, at, route.step_s);
                 }
                 solver.answer(&x, &mut end, at);
                 values.extend(equations.own.iter().map(|&own| end.y[own]));

@@ -6,9 +6,9 @@
 //! counterpart          far.a.tau = -screw.b.tau where the effect has size 0
 //! ```
 
-use super::{Route, Track, Vectors};
+use super::Vectors;
 use crate::plant::Places;
-use hyde_program::{Function, Point, Program, Workspace};
+use hyde_program::{Point, Program};
 
 /// Where each unknown of the track's program is in the vector of another program, and the sign it has there.
 pub(super) struct Counterparts {
@@ -25,28 +25,28 @@ impl Counterparts {
         }
     }
 
-    /// By their names, and where a program has no unknown of a name, by another variable that the track's program has made one
-    /// with it up to its sign.
-    pub(super) fn of(track: &Track<'_>, other: &Program) -> Option<Self> {
-        let own = track.route.program;
+    /// What they may be. Unknowns of the same name are the same; one that is missing may be any that is new, with either sign:
+    /// of two variables that are equal or opposite, a program keeps one as an unknown.
+    pub(super) fn possible(own: &Program, other: &Program) -> Vec<Self> {
         let (names, others) = (names(own), names(other));
         let by_name = names.iter().map(|name| {
             let at = others.iter().position(|known| known == name);
             at.map(|at| (at, 1.0))
         });
-        let mut found: Vec<Option<(usize, f64)>> = by_name.collect();
-        for (position, name) in others.iter().enumerate() {
-            if !names.contains(name)
-                && let Some(output) = own.output(name)
-                && let Some((number, sign)) = signed_unknown(track, output)
-                && found[number].is_none()
-            {
-                found[number] = Some((position, sign));
-            }
+        let by_name: Vec<Option<(usize, f64)>> = by_name.collect();
+        let with = |one: (usize, f64)| -> Self {
+            let all = by_name.iter().map(|found| found.unwrap_or(one));
+            let (positions, signs) = all.unzip();
+            Self { positions, signs }
+        };
+        let new = (0..others.len()).filter(|&at| !names.contains(&others[at]));
+        match by_name.iter().filter(|found| found.is_none()).count() {
+            0 => vec![with((0, 1.0))],
+            1 => new
+                .flat_map(|at| [with((at, -1.0)), with((at, 1.0))])
+                .collect(),
+            _ => Vec::new(),
         }
-        let found: Option<Vec<(usize, f64)>> = found.into_iter().collect();
-        let (positions, signs) = found?.into_iter().unzip();
-        Some(Self { positions, signs })
     }
 
     /// Whether those are states that are states there.
@@ -63,27 +63,6 @@ impl Counterparts {
             (into.y[position], into.yp[position]) = (sign * y, sign * yp);
         }
     }
-}
-
-/// The unknown that an output of the track's program is, and its sign: it is that whatever numbers unknowns have.
-fn signed_unknown(track: &Track<'_>, output: usize) -> Option<(usize, f64)> {
-    let Route {
-        program,
-        configurations,
-        p,
-        ..
-    } = &*track.route;
-    let at = configurations.first()?.made.point(p);
-    // Any numbers without relation to each other.
-    let y: Vec<f64> = (0..program.n_unknowns)
-        .map(|number| (12.9898 * number as f64 + 1.0).sin())
-        .collect();
-    let mut value = [0.0];
-    let rows = program.kernels.some_rows(Function::Outputs, &[output]);
-    let mut workspace = Workspace::new(program.n_work);
-    rows.evaluate(Point { y: &y, ..at }, &mut workspace, &mut value);
-    let number = y.iter().position(|y| y.abs() == value[0].abs())?;
-    Some((number, value[0] / y[number]))
 }
 
 /// The names of the unknowns of a program.

@@ -60,7 +60,6 @@ impl<'p> Equations<'p> {
         counterparts: &Counterparts,
         places: &Places,
         p: &[f64],
-        step_s: f64,
     ) -> Option<Self> {
         let mut is_own = vec![true; program.n_unknowns];
         for &position in &counterparts.positions {
@@ -110,7 +109,7 @@ impl<'p> Equations<'p> {
         let flow = if constant && linear {
             let by_drivers = rates * of_own(by_x(&looks[0][0]), &drivers);
             Flow::Constant {
-                over: over(&a(&looks[0][0]), &by_drivers, step_s),
+                over: over(&a(&looks[0][0]), &by_drivers, track.route.step_s),
                 drivers,
             }
         } else if looks.iter().flatten().all(|look| is_diagonal(&a(look))) {
