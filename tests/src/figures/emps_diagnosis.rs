@@ -20,7 +20,7 @@ pub(super) const BEFORE: Figure = Figure {
 pub(super) const DIAGNOSED: Figure = Figure {
     name: "emps_force_error_diagnosed_percent",
     unit: "%",
-    promise: Promise::AtMost(3.0),
+    promise: Promise::AtMost(2.6),
     measure: diagnosed,
 };
 

@@ -117,6 +117,11 @@ impl<'p> Track<'p> {
         if !counterparts.have_rates_alike(&route.places, &start.places) {
             return None;
         }
+        // An equation stands in the row of the unknown that it determines.
+        let of_axis = counterparts.positions.clone();
+        if !self.has_equations_of(program, p, &of_axis, &counterparts) {
+            return None;
+        }
         let carried = |counterparts, own, equations, values| Self {
             route: Arc::clone(route),
             carried: Some(Carried {
@@ -126,17 +131,11 @@ impl<'p> Track<'p> {
                 values,
             }),
         };
-        let all: Vec<usize> = (0..program.n_unknowns).collect();
-        if program.n_unknowns == route.program.n_unknowns {
-            let same = self.has_equations_of(program, p, &all, &counterparts);
-            return same.then(|| carried(counterparts, Vec::new(), all, Vec::new()));
+        if of_axis.len() == program.n_unknowns {
+            return Some(carried(counterparts, Vec::new(), of_axis, Vec::new()));
         }
         let equations = Equations::new(self, program, &counterparts, &start.places, p)?;
-        let of_axis: Vec<usize> = all
-            .into_iter()
-            .filter(|number| !equations.rows.contains(number))
-            .collect();
-        if !self.has_equations_of(program, p, &of_axis, &counterparts) {
+        if of_axis.iter().any(|number| equations.rows.contains(number)) {
             return None;
         }
         let states = &equations.own[..equations.states];
