@@ -4,13 +4,14 @@
 //! many of them yield, the loosest first ([`Firmness`]), and the run chooses which by numbers. Those that are fixed for this
 //! model never do: what is too much is reported.
 
-use crate::graph::{Bipartite, Matching};
+use crate::graph::Bipartite;
 use crate::refusals::states as refused;
 use crate::system::{Cell, System};
 use hyde_diag::{Diagnostics, Origin, Span};
 use hyde_ir::dae::{Dae, Firmness, InitialCondition, Space};
 use hyde_ir::{Expr, ExprId, Range, VarId};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 /// A state that needs a condition, or several of one array.
 struct Condition {
@@ -37,15 +38,12 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
         .filter(|condition| condition.firmness < Firmness::Given)
         .collect();
     loose.sort_by_key(|condition| condition.firmness);
-    let positions = |below: Firmness| -> Vec<usize> {
-        let below = loose.iter().filter(|c| c.firmness < below);
-        below.flat_map(|c| c.position..c.position + c.len).collect()
-    };
-    let (guesses, with_defaults) = (positions(Firmness::Default), positions(Firmness::Given));
+    let below = |firmness: Firmness| Free::of(loose.iter().filter(|c| c.firmness < firmness));
+    let (guesses, with_defaults) = (below(Firmness::Default), below(Firmness::Given));
     let to_find = dae.parameters.iter().filter(|p| p.found);
     let to_find: usize = to_find.map(hyde_ir::Parameter::size).sum();
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
-    let constrained = taken(&take(dae, &[], &with_defaults));
+    let constrained = take(dae, &[], &with_defaults).len();
     let open = with_defaults.len() - constrained + to_find;
     if needed > open {
         too_many(dae, &equations, &conditions, open, diagnostics);
@@ -55,11 +53,11 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
     for start in starts_of_algebraic(dae, system) {
         // Start values given for this model come before those that parts declare for every use.
         let given = dae.variables[start.given_by].start_given;
-        let open: &[usize] = if given { &with_defaults } else { &guesses };
-        let before = taken(&take(dae, &equations, open));
+        let open = if given { &with_defaults } else { &guesses };
+        let before = take(dae, &equations, open).len();
         let equation = (Range::SCALAR, start.condition, start.origin.clone());
         equations.push(equation);
-        if taken(&take(dae, &equations, open)) == before {
+        if take(dae, &equations, open).len() == before {
             equations.pop();
             if given {
                 checks.push((start.given_by, start.value, start.start));
@@ -73,7 +71,7 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
     let mut fixed = Vec::new();
     for condition in conditions {
         let each = condition.position..condition.position + condition.len;
-        let whole = !each.clone().any(|position| yielding.contains(&position));
+        let whole = yielding.range(each.clone()).next().is_none();
         let pieces = match whole {
             true => vec![(condition.position, condition.len)],
             false => each.map(|position| (position, 1)).collect(),
@@ -185,15 +183,19 @@ struct AlgebraicStart {
 /// Those given for this model first.
 fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<AlgebraicStart> {
     let blocks = dae.unknowns.iter().filter(|block| block.differential);
-    let states: BTreeSet<Cell> = blocks
-        .flat_map(|block| (0..block.len).map(|at| (block.var, block.first + at)))
+    let lengths: BTreeMap<Cell, usize> = blocks
+        .map(|block| ((block.var, block.first), block.len))
         .collect();
+    let is_state = |cell: Cell| {
+        let before = lengths.range(..=cell).next_back();
+        before.is_some_and(|(&(var, first), len)| var == cell.0 && cell.1 < first + len)
+    };
     let mut found = Vec::new();
     for (&(var, element), starts) in &system.starts {
         let Some(&(start, _, given_by)) = starts.iter().find(|(_, fixed, _)| *fixed) else {
             continue;
         };
-        if states.contains(&(var, element)) || dae.places[var].is_none() {
+        if is_state((var, element)) || dae.places[var].is_none() {
             continue;
         }
         let value = dae
@@ -215,38 +217,80 @@ fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<AlgebraicStart> {
 fn yielding(
     dae: &Dae,
     equations: &[(Range, ExprId, Origin)],
-    loose: &[usize],
+    loose: &Free,
     to_find: usize,
 ) -> BTreeSet<usize> {
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
-    let constraints = taken(&take(dae, &[], loose));
-    let matching = take(dae, equations, loose);
-    let placed = taken(&matching) - constraints;
+    let constraints = take(dae, &[], loose).len();
+    let taken = take(dae, equations, loose);
+    let placed = taken.len() - constraints;
     let unplaced = needed.saturating_sub(placed + to_find);
-    let (taken, left): (Vec<usize>, Vec<usize>) =
-        (0..loose.len()).partition(|&number| matching.of_right[number].is_some());
     // Equations that name no state directly determine some through the others: the loosest, and of those the last declared.
-    let also = left.into_iter().rev().take(unplaced);
-    taken
-        .into_iter()
-        .chain(also)
-        .map(|number| loose[number])
-        .collect()
+    let left = (0..loose.len())
+        .rev()
+        .filter(|number| !taken.contains(number));
+    let also: Vec<usize> = left.take(unplaced).collect();
+    let all = taken.iter().chain(&also);
+    all.map(|&number| loose.position(number)).collect()
 }
 
-/// How many free states are taken.
-fn taken(matching: &Matching) -> usize {
-    matching.of_right.iter().flatten().count()
+/// States that may yield, in the order in which they do.
+struct Free(Vec<Block>);
+
+/// Consecutive states: the number of the first among all that may yield, its position in the vector, and how many they are.
+#[derive(Clone, Copy)]
+struct Block {
+    number: usize,
+    position: usize,
+    len: usize,
 }
 
-/// Which free state each constraint between states takes, and each initial equation, of those it reads itself or through
-/// definitions.
-fn take(dae: &Dae, equations: &[(Range, ExprId, Origin)], free: &[usize]) -> Matching {
+impl Free {
+    fn of<'c>(conditions: impl Iterator<Item = &'c &'c Condition>) -> Self {
+        let mut number = 0;
+        let blocks = conditions.map(|condition| {
+            let block = Block {
+                number,
+                position: condition.position,
+                len: condition.len,
+            };
+            number += block.len;
+            block
+        });
+        Self(blocks.collect())
+    }
+
+    fn len(&self) -> usize {
+        self.0.last().map_or(0, |last| last.number + last.len)
+    }
+
+    /// The position of one in the vector.
+    fn position(&self, number: usize) -> usize {
+        let after = self.0.partition_point(|block| block.number <= number);
+        let block = &self.0[after - 1];
+        block.position + number - block.number
+    }
+
+    /// The numbers of those at some positions.
+    fn at(&self, positions: RangeInclusive<usize>) -> impl Iterator<Item = usize> {
+        self.0.iter().flat_map(move |block| {
+            let first = block.position.max(*positions.start());
+            let end = (block.position + block.len).min(positions.end() + 1);
+            (first..end).map(|position| block.number + position - block.position)
+        })
+    }
+}
+
+/// The numbers of the free states that constraints between states take, and initial equations, each of those it reads itself or
+/// through definitions.
+fn take(dae: &Dae, equations: &[(Range, ExprId, Origin)], free: &Free) -> BTreeSet<usize> {
     let mut edges = Vec::new();
     for selection in &dae.selections {
-        let own: Vec<usize> = (0..free.len())
-            .filter(|&number| selection.candidates.contains(&free[number]))
+        let candidates = selection.candidates.iter();
+        let mut own: Vec<usize> = candidates
+            .flat_map(|&position| free.at(position..=position))
             .collect();
+        own.sort_unstable();
         edges.extend(std::iter::repeat_n(own, selection.constraints.len()));
     }
     for (range, value, _) in equations {
@@ -268,8 +312,7 @@ fn take(dae: &Dae, equations: &[(Range, ExprId, Origin)], free: &[usize]) -> Mat
                     continue;
                 };
                 let (first, last) = System::interval(index, *range);
-                let cells = place.base + first..=place.base + last;
-                own.extend((0..free.len()).filter(|&number| cells.contains(&free[number])));
+                own.extend(free.at(place.base + first..=place.base + last));
             }
         }
         // What stands first in the list is taken first.
@@ -278,11 +321,21 @@ fn take(dae: &Dae, equations: &[(Range, ExprId, Origin)], free: &[usize]) -> Mat
         // An equation over a range takes as many states as it has values.
         edges.extend(std::iter::repeat_n(own, range.len()));
     }
+    // Of an array with many elements few are read.
+    let read: BTreeSet<usize> = edges.iter().flatten().copied().collect();
+    let read: Vec<usize> = read.into_iter().collect();
+    for number in edges.iter_mut().flatten() {
+        *number = read.partition_point(|own| own < number);
+    }
     let graph = Bipartite {
         edges,
-        n_right: free.len(),
+        n_right: read.len(),
     };
-    graph.maximum_matching()
+    let matching = graph.maximum_matching();
+    let taken = read.into_iter().zip(matching.of_right);
+    taken
+        .filter_map(|(number, by)| by.map(|_| number))
+        .collect()
 }
 
 fn too_many(

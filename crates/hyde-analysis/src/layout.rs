@@ -302,10 +302,8 @@ fn starts(system: &System, dae: &mut Dae) {
         }
         // An element of an array that is joined to a component starts as the component does.
         if dae.variables[id].len.is_some() {
-            for element in 0..size {
-                if let Some(given) = system.starts.get(&(id, element)) {
-                    dae.starts.push(start(place, element, best_start(given)));
-                }
+            for (&(_, element), given) in system.starts.range((id, 0)..(id, size)) {
+                dae.starts.push(start(place, element, best_start(given)));
             }
         }
     }

@@ -42,7 +42,7 @@ impl States {
     pub(crate) fn of(dae: &Dae) -> Self {
         let blocks = dae.blocks();
         let name = |position: usize, len: usize| {
-            let Some(&block) = blocks.get(position) else {
+            let Some(block) = blocks.at(position) else {
                 return String::new();
             };
             let block = &dae.unknowns[block];

@@ -115,16 +115,27 @@ pub struct Dae {
     pub notes: Vec<String>,
 }
 
-impl Dae {
-    /// For each position of the solver's vector, the block that it is in.
+/// The blocks of the solver's vector in the order of their positions, each with that of its first element.
+pub struct Blocks(Vec<(usize, UnknownId)>);
+
+impl Blocks {
+    /// The block that a position of the vector is in.
     #[must_use]
-    pub fn blocks(&self) -> Vec<UnknownId> {
+    pub fn at(&self, position: usize) -> Option<UnknownId> {
+        let after = self.0.partition_point(|(offset, _)| *offset <= position);
+        Some(self.0.get(after.checked_sub(1)?)?.1)
+    }
+}
+
+impl Dae {
+    /// The blocks of the solver's vector in the order of their positions.
+    #[must_use]
+    pub fn blocks(&self) -> Blocks {
         let all = self.unknowns.enumerate();
-        let mut positions: Vec<(usize, UnknownId)> = all
-            .flat_map(|(id, block)| (0..block.len).map(move |at| (block.offset + at, id)))
-            .collect();
-        positions.sort_unstable_by_key(|&(position, _)| position);
-        positions.into_iter().map(|(_, id)| id).collect()
+        let mut blocks: Vec<(usize, UnknownId)> =
+            all.map(|(id, block)| (block.offset, id)).collect();
+        blocks.sort_unstable();
+        Blocks(blocks)
     }
 
     /// The name of the unknown at a position of the solver's vector.

@@ -21,6 +21,7 @@ use hyde_ir::flat::{Assert, Equation};
 use hyde_ir::{BinaryOp, Expr as Ir, ExprArena, ExprId, Index, Memo, Range, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 /// Fewer cells than this and the weights of a moving place would reach both ends at once.
 const LEAST_CELLS: usize = 4;
@@ -50,6 +51,15 @@ impl Point {
             Self::AtNode(node) => vec![node],
             Self::InCell(node, _) => vec![node, node + 1],
             Self::Moving(_) => vec![1, n - 1],
+        }
+    }
+
+    /// The nodes that it reads.
+    pub(super) fn nodes(&self, n: i32) -> RangeInclusive<i32> {
+        match *self {
+            Self::AtNode(node) => node..=node,
+            Self::InCell(node, _) => node..=node + 1,
+            Self::Moving(_) => 0..=n,
         }
     }
 }

@@ -139,7 +139,7 @@ impl<'a> Model<'a, '_> {
         };
         let n = self.cells(field.domain);
         let mut id = self.flat.exprs.constant(0.0);
-        for node in 0..=n {
+        for node in point.nodes(n) {
             if let Some(weight) = self.weight(&point, Index::fixed(node), n) {
                 let value = self.flat.exprs.add(Ir::Var(var, Index::fixed(node)));
                 let share = self.flat.exprs.times(weight, value);
