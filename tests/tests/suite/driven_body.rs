@@ -33,6 +33,16 @@ diagnose all of calibrate body
 end all;
 ";
 
+const ON_GUIDE: &str = "model Body
+  input Force u;
+  Mass load(M = 1.02 [kg] ~ ±5%);
+  Guide guide(F = 0.2 [N]);
+  Drive push(F = u);
+equation
+  connect(push.a, load.a, guide.a);
+end Body;
+";
+
 /// A force that neither the model nor any other effect of these tests explains.
 pub(crate) const SLOW: &str = "effect Slow on Rail
   size Force F = 0 in -50 .. 50 [N];
@@ -51,9 +61,8 @@ pub(crate) fn diagnosed_on_guide(
     effects: &[&str],
     force_and_velocity: impl Fn(f64) -> (f64, f64),
 ) -> Value {
-    let on_guide = MODEL
-        .replace("  Rail a;\n", "  Rail a;\n  Guide guide(F = 0.2 [N]);\n")
-        .replace("equation\n", "equation\n  connect(a, guide.a);\n");
+    let (_, experiment) = MODEL.split_once("end Body;\n").unwrap();
+    let on_guide = [ON_GUIDE, &experiment.replace("= v ~", "= load.v ~")].concat();
     diagnosed_of(&on_guide, effects, force_and_velocity)
 }
 

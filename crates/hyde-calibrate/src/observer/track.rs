@@ -9,6 +9,7 @@ mod carried;
 mod counterparts;
 mod equations;
 mod splitting;
+mod vectors;
 
 use super::gain::Observer;
 use super::innovations::Innovations;
@@ -18,7 +19,6 @@ use crate::records::Recording;
 use bends::Bends;
 pub(crate) use bends::Passing;
 use carried::Carried;
-pub(crate) use carried::Vectors;
 use counterparts::{Counterparts, names};
 use hyde_program::{Point, Program, Workspace, Wrt};
 use nalgebra::DMatrix;
@@ -26,6 +26,7 @@ use rayon::prelude::*;
 pub(crate) use splitting::{Bend, Forcing, acting};
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
+pub(crate) use vectors::Vectors;
 
 /// How far from each other derivatives may be that are the same number, of the largest of their equation.
 const SAME: f64 = 1e-9;

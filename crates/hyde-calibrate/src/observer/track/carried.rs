@@ -13,6 +13,7 @@
 use super::Track;
 use super::counterparts::Counterparts;
 use super::equations::{Equations, Flow};
+use super::vectors::Vectors;
 use crate::linear::{phi1, set_product};
 use crate::observer::over_record::When;
 use crate::plant::Plant;
@@ -162,37 +163,6 @@ impl<'p> Track<'p> {
             }
         }
         Some(carried(counterparts, equations.own, of_axis, values))
-    }
-}
-
-/// Unknowns and their rates.
-#[derive(Clone, Default)]
-pub(crate) struct Vectors {
-    pub(super) y: Vec<f64>,
-    pub(super) yp: Vec<f64>,
-}
-
-impl Vectors {
-    /// Makes them as long as needed.
-    pub(super) fn reach(&mut self, count: usize) {
-        self.y.resize(count, 0.0);
-        self.yp.resize(count, 0.0);
-    }
-
-    /// Puts some to their positions.
-    fn put(&mut self, positions: &[usize], y: &[f64], yp: &[f64]) {
-        for (&position, (y, yp)) in positions.iter().zip(y.iter().zip(yp)) {
-            (self.y[position], self.yp[position]) = (*y, *yp);
-        }
-    }
-
-    /// The point, its vectors being these.
-    pub(super) fn in_place<'a>(&'a self, at: Point<'a>) -> Point<'a> {
-        Point {
-            y: &self.y,
-            yp: &self.yp,
-            ..at
-        }
     }
 }
 

@@ -6,7 +6,7 @@
 //! counterpart          far.a.tau = -screw.b.tau where the effect has size 0
 //! ```
 
-use super::Vectors;
+use super::vectors::Vectors;
 use crate::plant::Places;
 use hyde_program::{Point, Program};
 

@@ -6,8 +6,8 @@
 //! ```
 //! They are looked at wherever modes are new and now and then, with the own unknowns at 0 and elsewhere.
 
-use super::carried::Vectors;
 use super::counterparts::Counterparts;
+use super::vectors::Vectors;
 use super::{Passed, Track};
 use crate::linear::steps;
 use crate::observer::over_record::When;
