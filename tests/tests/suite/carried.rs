@@ -37,16 +37,22 @@ end {name};
     )
 }
 
-/// A force that goes with the square of the time, of a name, with something beside it that does not act.
+/// A force that increases with the square of the time, of a name, with something beside it that does not act.
 fn push(name: &str, beside: &str) -> String {
     format!(
         "effect {name} on Rail
   size Force F = 0 in -10 .. 10 [N];
-  add a.f = F*(0.25 [1/s]*time)^2{beside};
-end {name};
+  add a.f = F*(0.25 [1/s]*time)^2;
+{beside}end {name};
 "
     )
 }
+
+const COUPLED: &str = "  Real z(start = 0, fixed = true), y(start = 0, fixed = true);
+equation
+  der(z) = 1 [1/s]*(1 - z^3 + 1e-3*y);
+  der(y) = 1 [1/s]*(1 - y^3 + 1e-3*z);
+";
 
 /// Cosines of 3 and 31 rad/s as a force, and the velocity of 1 kg under it and under the force that only `Slow` explains.
 fn force_and_velocity(t: f64) -> (f64, f64) {
@@ -102,14 +108,14 @@ fn what_an_effect_brings_is_carried_along_as_in_a_run_of_its_own() {
 
 #[test]
 fn an_effect_that_changes_which_of_two_equal_forces_is_unknown_promises_what_a_run_tells() {
-    // Without an effect the force on the body is that of the guide; beside one, either may be the unknown. A relation that an
-    // effect brings, though it never changes, needs a run of its own.
+    // Without an effect the force on the body is that of the guide; beside one, either may be the unknown. States that are not
+    // linear and act on each other need a run of their own.
     let effects = [
         push("Push", ""),
-        push("WatchedPush", "*(if time > 1000 [s] then 2 else 1)"),
+        push("CoupledPush", COUPLED),
         SLOW.to_owned(),
     ];
     let effects = effects.each_ref().map(String::as_str);
     let found = diagnosed_on_guide(&effects, force_and_velocity);
-    promise_alike(&found, "Push", "WatchedPush", 1e-6);
+    promise_alike(&found, "Push", "CoupledPush", 1e-6);
 }
