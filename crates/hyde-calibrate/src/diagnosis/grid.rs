@@ -51,12 +51,13 @@ impl<'h> Grid<'h> {
         }
     }
 
-    /// Around so many places at most of the grid that gain most where parts of a second are apart, for what is periodic.
-    pub(crate) fn fine(&self, gains: &[f64], most: usize) -> Vec<Vec<f64>> {
+    /// Around so many places at most of the grid that gain most where parts of a second are apart, for what is periodic. What does
+    /// not reach the gate there does not reach it with one size for all parts.
+    pub(crate) fn fine(&self, gains: &[f64], most: usize, gate: f64) -> Vec<Vec<f64>> {
         let Some(axis) = self.hypothesis.periodic else {
             return Vec::new();
         };
-        let mut order: Vec<usize> = (0..gains.len()).filter(|&k| gains[k] > 0.0).collect();
+        let mut order: Vec<usize> = (0..gains.len()).filter(|&k| gains[k] >= gate).collect();
         order.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
         let mut places: Vec<usize> = Vec::new();
         for k in order {

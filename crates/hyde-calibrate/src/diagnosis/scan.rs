@@ -188,7 +188,7 @@ impl Scanner<'_> {
         promised.nodes = coarse.nodes;
         promised.detectable = coarse.seen;
         // The peak of a period is the narrower, the further the axis goes; over a part of a second it is wide.
-        let fine = grid.fine(&coarse.apart, self.ground.thresholds.few);
+        let fine = grid.fine(&coarse.apart, self.ground.thresholds.few, self.gate);
         if !fine.is_empty() {
             let fine = self.look(&promised, &fine)?;
             promised.nodes.extend(fine.nodes);
