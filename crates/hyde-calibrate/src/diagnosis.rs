@@ -65,6 +65,7 @@ mod thresholds;
 mod trial;
 mod undetermined;
 mod unknown;
+mod unknowns;
 mod whole;
 
 pub(crate) use projection::Projection;

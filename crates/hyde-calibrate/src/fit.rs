@@ -19,6 +19,7 @@
 mod blocks;
 mod calibration;
 mod descent;
+mod goal;
 mod identifiability;
 mod information;
 mod joint;
@@ -34,6 +35,7 @@ pub use blocks::Fold;
 pub(crate) use blocks::rows_of_a_block;
 pub use calibration::{Fit, FittedParameter, fit, fitted_parameters};
 pub(crate) use descent::{LAST_STEPS, MAX_STEPS, Objective, sum_of_squares};
+pub(crate) use goal::Goal;
 pub use identifiability::{Identifiability, Together};
 pub use information::{Information, UNKNOWN};
 pub use joint::{Joint, Part};

@@ -6,6 +6,7 @@ use super::forward::Forward;
 use super::scan::Score;
 use super::stage::{Ground, Stage};
 use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
+use crate::fit::{Goal, Solution};
 use rayon::prelude::*;
 
 /// How a contest ended.
@@ -35,15 +36,19 @@ impl Forward<'_> {
             .into_par_iter()
             .filter_map(|score| begin(ground, stage, hypotheses, score, build, true))
             .collect();
-        let gains = begun.iter().map(|begun| begun.gain);
-        let gains = gains.chain(earlier.iter().map(|trial| trial.gain));
-        let ahead = gains.fold(0.0, f64::max);
+        let solutions = begun.iter().map(|begun| (begun.gain, begun.solution()));
+        let known = earlier
+            .iter()
+            .map(|trial| (trial.gain, &trial.stage.solution));
+        let ahead = ahead(solutions.chain(known));
+        let goal = ahead.map(|ahead| goal(stage, ahead, gates));
+        let least = ahead.map_or(0.0, |(gain, _)| ground.thresholds.contender * gain);
         let mut trials = earlier;
         trials.par_extend(begun.into_par_iter().filter_map(|begun| {
-            let worth = begun.gain >= ground.thresholds.contender * ahead;
-            finish(ground, stage, hypotheses, begun, worth)
+            let worth = begun.gain >= least;
+            finish(ground, stage, hypotheses, begun, worth, goal)
         }));
-        refine(ground, stage, &mut trials);
+        refine(ground, stage, &mut trials, gates);
         judge(ground, stage, &mut trials, gates);
         let rank = |trial: &Trial| {
             (
@@ -65,18 +70,35 @@ impl Forward<'_> {
     }
 }
 
+/// The best of some solutions, each with its gain.
+fn ahead<'t>(solutions: impl Iterator<Item = (f64, &'t Solution)>) -> Option<(f64, &'t Solution)> {
+    solutions.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// What a solution is to gain over a stage to come within a gate of the best.
+fn goal<'s>(stage: &'s Stage, (gain, best): (f64, &Solution), gates: Gates) -> Goal<'s> {
+    Goal {
+        over: &stage.solution,
+        gain: gain - gates.of_one(best),
+    }
+}
+
 /// Fits to the end those that gain nearly as much as the best, if it is not alone: the same effect one shaft further gains
 /// all but a few units of it, and tangents leave as many.
-fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
+fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates) {
     let fine = |trial: &Trial| trial.rejected.is_none();
-    let best = trials.iter().filter(|trial| fine(trial));
-    let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
-    let contends = |trial: &Trial| fine(trial) && trial.gain >= ground.thresholds.rival * best;
+    let solutions = trials.iter().filter(|trial| fine(trial));
+    let ahead = ahead(solutions.map(|trial| (trial.gain, &trial.stage.solution)));
+    let Some(ahead) = ahead else {
+        return;
+    };
+    let (goal, least) = (goal(stage, ahead, gates), ground.thresholds.rival * ahead.0);
+    let contends = |trial: &Trial| fine(trial) && trial.gain >= least;
     if trials.iter().filter(|trial| contends(trial)).count() < 2 {
         return;
     }
     let contenders = trials.par_iter_mut().filter(|trial| contends(trial));
-    contenders.for_each(|trial| trial.refine(ground, stage));
+    contenders.for_each(|trial| trial.refine(ground, stage, goal));
 }
 
 /// Puts the gates to the trials, the best first; halves are fitted only of those that pass the others and come near the

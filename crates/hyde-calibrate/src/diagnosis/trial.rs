@@ -2,12 +2,13 @@
 //! seen.
 
 use super::evidence::Gates;
-use super::hypothesis::{Build, Built, Hypothesis, Knob, is_on_bound};
+use super::hypothesis::{Build, Built, Hypothesis, is_on_bound};
 use super::scan::{Node, Score};
 use super::stage::{Ground, Stage};
 use super::undetermined;
+use super::unknowns::{Refit, Unknowns};
 use crate::fit::{
-    Fold, LAST_STEPS, MAX_STEPS, Objective, Slopes, Solution, Varied, covariance,
+    Fold, Goal, LAST_STEPS, MAX_STEPS, Objective, Slopes, Solution, Varied, covariance,
     covariance_of_first, inflation_of,
 };
 use crate::observer::Innovations;
@@ -16,14 +17,9 @@ use hyde_signal::statistics::distributions::{OUTSIDE, TWO_SIDED, chi_squared};
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// Numerics: a shape is visibly another by this part of its value or its range.
-const VISIBLE_SHAPE: f64 = 0.03;
 /// Numerics: steps from a node before nodes are compared, and twice as many from the whole fit to that of a half: laws that are
 /// far from linear need more than one or two.
 const FIRST_STEPS: usize = 3;
-
-/// A refit, what it varied, and the shapes it kept fixed.
-type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
 
 /// Why a hypothesis was not taken in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,16 +129,20 @@ impl Trial {
         })
     }
 
-    /// Fits on by differences of runs, as long as that gains; once.
-    pub(super) fn refine(&mut self, ground: &Ground<'_>, stage: &Stage) {
+    /// Fits on by differences of runs, as long as that gains and a goal is in reach; once.
+    pub(super) fn refine(&mut self, ground: &Ground<'_>, stage: &Stage, goal: Goal<'_>) {
         if std::mem::replace(&mut self.refined, true) {
             return;
         }
         let own = &self.stage;
         let set = ground.set_in(&own.program, &own.kept);
         let problem = ground.problem(&own.program, &own.varied, &set, None);
-        let Ok(solution) = problem.solve_in(&own.solution.values, LAST_STEPS, Slopes::Differences)
-        else {
+        let Ok(solution) = problem.solve_for(
+            Some(goal),
+            &own.solution.values,
+            LAST_STEPS,
+            Slopes::Differences,
+        ) else {
             return;
         };
         self.settle(solution, stage);
@@ -167,6 +167,12 @@ pub(crate) struct Begun<'s> {
     pub(crate) gain: f64,
 }
 
+impl Begun<'_> {
+    pub(super) fn solution(&self) -> &Solution {
+        &self.refit.0
+    }
+}
+
 /// Fits a law from its best nodes; `None` where it cannot be run. It was chosen by slopes: where they lead astray it is none.
 pub(crate) fn trial(
     ground: &Ground<'_>,
@@ -176,7 +182,7 @@ pub(crate) fn trial(
     build: &Build<'_>,
 ) -> Option<Trial> {
     let begun = begin(ground, stage, hypotheses, score, build, false)?;
-    finish(ground, stage, hypotheses, begun, true)
+    finish(ground, stage, hypotheses, begun, true, None)
 }
 
 /// Fits a hypothesis in a few steps from each of its best nodes, and if it may begin `anew` and slopes at these lead astray,
@@ -247,13 +253,14 @@ pub(crate) fn together(
     })
 }
 
-/// Fits to the end what has begun, if it is worth it.
+/// Fits to the end what has begun, if it is worth it, and as long as a goal is in reach.
 pub(crate) fn finish(
     ground: &Ground<'_>,
     stage: &Stage,
     hypotheses: &[Hypothesis],
     begun: Begun<'_>,
     worth: bool,
+    goal: Option<Goal<'_>>,
 ) -> Option<Trial> {
     let Begun {
         score,
@@ -271,13 +278,14 @@ pub(crate) fn finish(
             Slopes::Differences => LAST_STEPS,
         };
         let problem = ground.problem(&program, varied, &set, None);
-        problem.solve_in(from, steps, slopes).ok()
+        problem.solve_for(goal, from, steps, slopes).ok()
     };
     if worth && !solution.converged {
         solution = fit(&solution.values, &varied, &kept, Slopes::Tangents)?;
     }
     // What slopes along one run do not bring to its end, differences do.
-    if worth && !solution.converged {
+    let reached = goal.is_none_or(|goal| goal.is_reached_by(&solution));
+    if worth && reached && !solution.converged {
         let end = fit(&solution.values, &varied, &kept, Slopes::Differences);
         solution = end.unwrap_or(solution);
     }
@@ -408,77 +416,4 @@ pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<f64> {
     };
     let (even, odd) = rayon::join(|| half(false), || half(true));
     Some(even? + odd?)
-}
-
-/// What is varied in a fit, with its start, and what stays.
-struct Unknowns {
-    varied: Vec<Varied>,
-    start: Vec<f64>,
-    kept: Vec<(String, f64)>,
-}
-
-impl Unknowns {
-    /// The parameters of a stage.
-    fn of(stage: &Stage, program: &Program) -> Self {
-        Self {
-            varied: stage.varied_in(program),
-            start: stage.solution.values.clone(),
-            kept: stage.kept.clone(),
-        }
-    }
-
-    /// Adds the sizes of an effect and its shapes, from a node, and lets the parameters answer it; whole numbers stay.
-    fn add(&mut self, program: &Program, hypothesis: &Hypothesis, path: &str, node: &Node) {
-        let parameters = self.start.iter_mut().zip(&self.varied);
-        for ((value, varied), step) in parameters.zip(&node.parameters) {
-            *value = (*value + step * varied.scale()).clamp(varied.bounds.0, varied.bounds.1);
-        }
-        let sizes = Hypothesis::names(&hypothesis.sizes, path)
-            .into_iter()
-            .zip(&hypothesis.sizes);
-        for ((name, knob), (&value, &visible)) in sizes.zip(node.sizes.iter().zip(&node.visible)) {
-            let visible = visible.abs().max(1e-6 * value.abs()).max(f64::MIN_POSITIVE);
-            self.vary(program, name, knob, value, visible);
-        }
-        let shapes = Hypothesis::names(&hypothesis.shapes, path)
-            .into_iter()
-            .zip(&hypothesis.shapes);
-        for ((name, knob), &value) in shapes.zip(&node.shapes) {
-            let structural = program
-                .parameter(&name)
-                .is_none_or(|(parameter, _)| parameter.structural);
-            if knob.integer || structural {
-                self.kept.push((name, value));
-            } else {
-                let range = knob.range.1 - knob.range.0;
-                let visible = VISIBLE_SHAPE * if value == 0.0 { range } else { value.abs() };
-                self.vary(program, name, knob, value, visible);
-            }
-        }
-    }
-
-    /// Fits them in so many steps at most; `None` where the model cannot be run.
-    fn fitted(self, ground: &Ground<'_>, program: &Program, steps: usize) -> Option<Refit> {
-        let set = ground.set_in(program, &self.kept);
-        let problem = ground.problem(program, &self.varied, &set, None);
-        let solution = problem
-            .solve_in(&self.start, steps, Slopes::Tangents)
-            .ok()?;
-        Some((solution, self.varied, self.kept))
-    }
-
-    fn vary(&mut self, program: &Program, name: String, knob: &Knob, value: f64, visible: f64) {
-        let Some((parameter, element)) = program.parameter(&name) else {
-            return;
-        };
-        self.varied.push(Varied {
-            name,
-            place: parameter.place + element,
-            nominal: value,
-            prior: None,
-            bounds: knob.range,
-            visible: Some(visible),
-        });
-        self.start.push(value);
-    }
 }

@@ -7,6 +7,7 @@
 //! [Derivatives](super::linearised) are those along one run, for the last steps differences of runs; intervals are of the
 //! former. Sums are formed in a fixed order, so the number of threads changes nothing.
 
+use super::goal::Goal;
 use super::linearised::Slopes;
 use super::solution::Solution;
 use super::uncertainty::inflation;
@@ -64,7 +65,24 @@ pub(crate) trait Objective {
     where
         Self: Sized,
     {
-        descend(self, start, most, slopes)
+        descend(self, start, most, slopes, None)
+    }
+
+    /// The same, as long as a goal is in reach.
+    ///
+    /// # Errors
+    /// A program has no fixed-step form.
+    fn solve_for(
+        &self,
+        goal: Option<Goal<'_>>,
+        start: &[f64],
+        most: usize,
+        slopes: Slopes,
+    ) -> Result<Solution, Unsupported>
+    where
+        Self: Sized,
+    {
+        descend(self, start, most, slopes, goal)
     }
 }
 
@@ -87,17 +105,18 @@ impl Normal {
     }
 }
 
-/// Minimises in a few steps.
+/// Minimises in a few steps, as long as a goal is in reach.
 fn descend(
     objective: &impl Objective,
     start: &[f64],
     most: usize,
     slopes: Slopes,
+    goal: Option<Goal<'_>>,
 ) -> Result<Solution, Unsupported> {
     let varied = objective.varied();
     let mut values = inside(varied, start);
     let mut lambda = 1e-3;
-    let (mut steps, mut converged) = (0, false);
+    let (mut steps, mut converged, mut behind) = (0, false, false);
     let (mut innovations, mut normal) = objective.normal(&values, slopes)?;
     let mut known = Known::at(varied, &values);
     let (mut data, mut priors) = (
@@ -105,7 +124,7 @@ fn descend(
         known_beforehand(varied, &values),
     );
     let mut weight = inflation(&innovations);
-    while steps < most && !converged {
+    while steps < most && !converged && !behind {
         let mut taken = false;
         for failed in 0..8 {
             let step = step(varied, &values, &normal, &known, weight, lambda);
@@ -116,7 +135,11 @@ fn descend(
                 let new_data = sum_of_squares(&there);
                 converged = limit - new_data < LEAST_GAIN * weight;
                 (values, data, priors) = (new, new_data, new_priors);
+                let gained = limit - new_data;
                 weight = inflation(&there).min(weight);
+                behind = goal.is_some_and(|goal| {
+                    goal.is_out_of_reach((data, priors, weight), gained, most - steps - 1)
+                });
                 // A damping that was found only after others failed is kept.
                 if failed == 0 {
                     lambda = (lambda * 0.1).max(1e-9);
@@ -135,7 +158,8 @@ fn descend(
         if !taken {
             converged = true;
         }
-        if !converged {
+        // How sharp a solution is, slopes before the last step tell as well.
+        if steps < most && !converged && !behind {
             (innovations, normal) = objective.normal(&values, slopes)?;
             known = Known::at(varied, &values);
         }
