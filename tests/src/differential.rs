@@ -42,6 +42,18 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Adds what came of other models.
+    pub fn add(&mut self, other: Self) {
+        for (way, counts) in other.counts {
+            let own = self.counts.entry(way).or_default();
+            own.iter_mut()
+                .zip(counts)
+                .for_each(|(own, more)| *own += more);
+        }
+        self.disagreements.extend(other.disagreements);
+        self.refusals.extend(other.refusals);
+    }
+
     /// The part of the comparisons that was refused.
     #[must_use]
     pub fn refused(&self) -> f64 {

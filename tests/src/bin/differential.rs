@@ -1,7 +1,11 @@
-//! `differential [FROM TO [WAY…]]`: compares the models of some seeds, and prints what disagrees and what is refused.
+//! `differential [FROM TO [WAY…]]`: compares the models of some seeds, and prints what disagrees and what is refused as it is
+//! found.
 
-use hyde_tests::differential::{Way, compare};
+use hyde_tests::differential::{Summary, Way, compare};
 use std::process::ExitCode;
+
+/// Models between two lines that say how far it is.
+const AT_ONCE: usize = 100;
 
 #[allow(clippy::print_stdout, reason = "a command prints")]
 fn main() -> ExitCode {
@@ -19,14 +23,19 @@ fn main() -> ExitCode {
         .into_iter()
         .filter(|way| words.len() < 3 || words[2..].contains(&format!("{way:?}")))
         .collect();
-    let summary = compare(from..to, |_| chosen.clone());
-    for refusal in &summary.refusals {
-        println!("refused: {}", refusal.lines().next().unwrap_or_default());
+    let mut all = Summary::default();
+    for first in (from..to).step_by(AT_ONCE) {
+        let next = to.min(first + AT_ONCE as u64);
+        let summary = compare(first..next, |_| chosen.clone());
+        for refusal in &summary.refusals {
+            println!("refused: {}", refusal.lines().next().unwrap_or_default());
+        }
+        for disagreement in &summary.disagreements {
+            println!("{disagreement}");
+        }
+        all.add(summary);
+        println!("{next} of {to}: {} disagreements", all.disagreements.len());
     }
-    for disagreement in &summary.disagreements {
-        println!("{disagreement}");
-    }
-    println!("{:#?}\nrefused {}", summary.counts, summary.refused());
-    println!("{} disagreements", summary.disagreements.len());
-    ExitCode::from(u8::from(!summary.disagreements.is_empty()))
+    println!("{:#?}\nrefused {}", all.counts, all.refused());
+    ExitCode::from(u8::from(!all.disagreements.is_empty()))
 }

@@ -1,8 +1,8 @@
 //! `emps_force_error_…_percent`: the measured axis diagnosed on the first half of its record, judged on the second.
 //!
-//! All are the closed loop over the whole record, the force compared in the second half only. Diagnosed: the effects that
-//! `hyde diagnose` finds in the first half, the same parameters fitted there with them, and the controller as the diagnosis of
-//! that half says that it is to be written. After: the refined model of the example, fitted there.
+//! All are the closed loop over the whole record, the force compared in the second half only. Diagnosed: the model that `hyde
+//! diagnose --out` writes for the first half, with the effects and the parameters that it finds there, and the controller as
+//! the diagnosis says that it is to be written. After: the refined model of the example, fitted there.
 
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::{Example, root};
@@ -33,6 +33,8 @@ pub(super) const AFTER: Figure = Figure {
 
 const FILE: &str = "examples/emps/emps.hyde";
 const RECORD: &str = "emps/emps_est.csv";
+/// The model with the effects that are found, as the diagnosis names it.
+const FOUND: &str = "Axis2";
 /// The row where the second half begins, and its time.
 const HALF: usize = 12_420;
 const SECOND: (&str, &str) = ("skip 49 [ms]", "skip 12.42 [s]");
@@ -89,49 +91,23 @@ fn diagnosed(session: &Session) -> Result<Measured, String> {
     write("fit-1.csv", &halves[0])?;
     write("holdout-1.csv", &halves[1])?;
     write("emps.hyde", &model)?;
-    let found = hyde(folder.path(), &["diagnose", "emps.hyde", "emps", "--json"])?;
-    let effects = effects(&found)?;
-    if effects.is_empty() {
+    let found = hyde(
+        folder.path(),
+        &["diagnose", "emps.hyde", "emps", "--json", "--out", "."],
+    )?;
+    let written = folder.path().join(FOUND).with_extension("hyde");
+    if !written.is_file() {
         return Err(format!("no effect was found: {}", found["sentence"]));
     }
-    let with: Vec<String> = effects.iter().map(Effect::text).collect();
-    let text = model
-        .replace("of Axis(q0", "of Found(q0")
-        .replace("calibrate emps of Axis", "calibrate emps of Found")
-        .replace(
-            "offset in -20 .. 20 [N];",
-            &format!(
-                "offset in -20 .. 20 [N]{};",
-                effects.iter().map(Effect::varied).collect::<String>()
-            ),
-        )
-        .replace(
-            "experiment tracking",
-            &format!(
-                "model Found = Axis with {};\n\nexperiment tracking",
-                with.join(", ")
-            ),
-        );
-    write("found.hyde", &text)?;
-    let fitted = hyde(folder.path(), &["fit", "found.hyde", "emps", "--json"])?;
-    let parameters = fitted["parameters"].as_array();
-    let set = |mut example: Example| -> Result<Example, String> {
-        for parameter in parameters.ok_or("the fit has no parameters")? {
-            let (name, value) = (parameter["name"].as_str(), parameter["value"].as_f64());
-            let (Some(name), Some(value)) = (name, value) else {
-                return Err(format!("not understood: {parameter}"));
-            };
-            example = example.set(name, value);
-        }
-        Ok(example)
-    };
+    // The first experiment of the file is that of the closed loop.
+    let text = read(&written)?.replacen("of Axis(q0", &format!("of {FOUND}(q0"), 1);
     let edits = found["command_timings"].as_array().into_iter().flatten();
     let edits =
         edits.filter_map(|own| own["edit"]["from"].as_str().zip(own["edit"]["to"].as_str()));
     let mended = edits.fold(text, |text, (from, to)| text.replace(from, to));
     let example = Example::load(FILE, Some("tracking"))?.record("file", &record);
     let example = example.replaced(&mended, "tracking");
-    force(&set(example.rewritten(SECOND.0, SECOND.1))?).map(Measured::Value)
+    force(&example.rewritten(SECOND.0, SECOND.1)).map(Measured::Value)
 }
 
 /// Both halves of the record, the time of either from 0: the record's own clock drifts by less than a thousandth of a row.
@@ -146,62 +122,6 @@ fn halves(rows: &str) -> [String; 2] {
         halves[half].push_str(&format!("{time:.3},{rest}\n"));
     }
     halves
-}
-
-/// An effect that was found, its values with their SI units.
-struct Effect {
-    name: String,
-    site: String,
-    values: Vec<(String, f64, String)>,
-}
-
-impl Effect {
-    /// As it is written behind `with`.
-    fn text(&self) -> String {
-        let values = self.values.iter();
-        let values = values.map(|(name, value, unit)| format!("{name} = {value} [{unit}]"));
-        let values: Vec<String> = values.collect();
-        format!("{}({}) on {}", self.name, values.join(", "), self.site)
-    }
-
-    /// As it is written behind `vary`: about what was found.
-    fn varied(&self) -> String {
-        let each = self.values.iter().map(|(name, value, unit)| {
-            let (low, high) = match *value < 0.0 {
-                true => (3.0 * value, 0.1 * value),
-                false => (0.1 * value, 3.0 * value),
-            };
-            format!(
-                ", {}.{}.{name} in {low} .. {high} [{unit}]",
-                self.site, self.name
-            )
-        });
-        each.collect()
-    }
-}
-
-fn effects(found: &Value) -> Result<Vec<Effect>, String> {
-    let list = found["effects"].as_array().ok_or("no effects are told")?;
-    let each = list.iter().map(|one| {
-        let text = |name: &str| one[name].as_str().unwrap_or_default().to_owned();
-        let mut values = Vec::new();
-        for part in ["sizes", "shape"] {
-            for (name, value) in one[part].as_object().into_iter().flatten() {
-                // The phase of a sine and a cosine is no parameter.
-                if name != "phase" {
-                    let number = value["value"].as_f64().ok_or("a value is no number")?;
-                    let unit = value["unit"].as_str().unwrap_or("1").to_owned();
-                    values.push((name.clone(), number, unit));
-                }
-            }
-        }
-        Ok(Effect {
-            name: text("effect"),
-            site: text("site"),
-            values,
-        })
-    });
-    each.collect()
 }
 
 /// Runs the command, which this very program is, and reads what it prints.
