@@ -168,6 +168,7 @@ pub(crate) struct Begun<'s> {
 }
 
 impl Begun<'_> {
+    /// Where it is after its few steps.
     pub(super) fn solution(&self) -> &Solution {
         &self.refit.0
     }

@@ -65,7 +65,7 @@ pub(crate) trait Objective {
     where
         Self: Sized,
     {
-        descend(self, start, most, slopes, None)
+        self.solve_for(None, start, most, slopes)
     }
 
     /// The same, as long as a goal is in reach.
@@ -133,9 +133,9 @@ fn descend(
             let limit = data + weight * (priors - new_priors);
             if let Some(there) = objective.within(&new, limit)? {
                 let new_data = sum_of_squares(&there);
-                converged = limit - new_data < LEAST_GAIN * weight;
-                (values, data, priors) = (new, new_data, new_priors);
                 let gained = limit - new_data;
+                converged = gained < LEAST_GAIN * weight;
+                (values, data, priors) = (new, new_data, new_priors);
                 weight = inflation(&there).min(weight);
                 behind = goal.is_some_and(|goal| {
                     goal.is_out_of_reach((data, priors, weight), gained, most - steps - 1)

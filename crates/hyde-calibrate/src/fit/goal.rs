@@ -16,16 +16,10 @@ impl Goal<'_> {
         solution.gain_over(self.over) >= self.gain
     }
 
-    /// Whether so many more steps that gain as much as the last do not reach it. A solution is the sum of squares of its
-    /// innovations, that of what is known beforehand, and the weight of the latter.
-    pub(super) fn is_out_of_reach(
-        &self,
-        (data, priors, weight): (f64, f64, f64),
-        gained: f64,
-        steps: usize,
-    ) -> bool {
-        let so_far = self.over.data + weight * self.over.priors - (data + weight * priors);
-        so_far + gained * (steps as f64) < self.gain
+    /// Whether so many more steps that gain as much as the last do not reach it, from a solution as
+    /// [`Solution::gained_by`] takes it.
+    pub(super) fn is_out_of_reach(&self, here: (f64, f64, f64), gained: f64, steps: usize) -> bool {
+        self.over.gained_by(here) + gained * (steps as f64) < self.gain
     }
 }
 

@@ -45,6 +45,12 @@ impl Solution {
     /// What it gains over another, priors weighed as here.
     #[must_use]
     pub fn gain_over(&self, other: &Self) -> f64 {
-        other.data + self.weight * other.priors - self.cost()
+        other.gained_by((self.data, self.priors, self.weight))
+    }
+
+    /// What a solution gains over this one: its sum of squares of innovations, that of what is known beforehand, and the weight
+    /// of the latter.
+    pub(super) fn gained_by(&self, (data, priors, weight): (f64, f64, f64)) -> f64 {
+        self.data + weight * self.priors - (data + weight * priors)
     }
 }
