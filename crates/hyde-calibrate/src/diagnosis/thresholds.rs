@@ -128,7 +128,7 @@ thresholds! {
     contender: f64 = 0.5,
         because "the linear prediction is good to a factor of two",
         removed 1.0;
-    /// Share of the best improvement above which another effect, another site or another first term of a law is a rival of the best, and is fitted as far.
+    /// Share of the best improvement above which another effect, another site or another first term of a law is a rival of the best, and is fitted on as long as it can reach the best.
     rival: f64 = 0.8,
         because "an effect bends towards what is missing beside it by up to a fifth of its improvement",
         removed 1.0;
