@@ -4,14 +4,15 @@
 //! many of them yield, the loosest first ([`Firmness`]), and the run chooses which by numbers. Those that are fixed for this
 //! model never do: what is too much is reported.
 
-use crate::graph::Bipartite;
+mod taken;
+
 use crate::refusals::states as refused;
 use crate::system::{Cell, System};
 use hyde_diag::{Diagnostics, Origin, Span};
-use hyde_ir::dae::{Dae, Firmness, InitialCondition, Space};
+use hyde_ir::dae::{Dae, Firmness, InitialCondition};
 use hyde_ir::{Expr, ExprId, Range, VarId};
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::RangeInclusive;
+use taken::{Free, take};
 
 /// A state that needs a condition, or several of one array.
 struct Condition {
@@ -38,7 +39,12 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
         .filter(|condition| condition.firmness < Firmness::Given)
         .collect();
     loose.sort_by_key(|condition| condition.firmness);
-    let below = |firmness: Firmness| Free::of(loose.iter().filter(|c| c.firmness < firmness));
+    let below = |firmness: Firmness| {
+        let looser = loose
+            .iter()
+            .filter(|condition| condition.firmness < firmness);
+        Free::of(looser.map(|condition| (condition.position, condition.len)))
+    };
     let (guesses, with_defaults) = (below(Firmness::Default), below(Firmness::Given));
     let to_find = dae.parameters.iter().filter(|p| p.found);
     let to_find: usize = to_find.map(hyde_ir::Parameter::size).sum();
@@ -232,110 +238,6 @@ fn yielding(
     let also: Vec<usize> = left.take(unplaced).collect();
     let all = taken.iter().chain(&also);
     all.map(|&number| loose.position(number)).collect()
-}
-
-/// States that may yield, in the order in which they do.
-struct Free(Vec<Block>);
-
-/// Consecutive states: the number of the first among all that may yield, its position in the vector, and how many they are.
-#[derive(Clone, Copy)]
-struct Block {
-    number: usize,
-    position: usize,
-    len: usize,
-}
-
-impl Free {
-    fn of<'c>(conditions: impl Iterator<Item = &'c &'c Condition>) -> Self {
-        let mut number = 0;
-        let blocks = conditions.map(|condition| {
-            let block = Block {
-                number,
-                position: condition.position,
-                len: condition.len,
-            };
-            number += block.len;
-            block
-        });
-        Self(blocks.collect())
-    }
-
-    fn len(&self) -> usize {
-        self.0.last().map_or(0, |last| last.number + last.len)
-    }
-
-    /// The position of one in the vector.
-    fn position(&self, number: usize) -> usize {
-        let after = self.0.partition_point(|block| block.number <= number);
-        let block = &self.0[after - 1];
-        block.position + number - block.number
-    }
-
-    /// The numbers of those at some positions.
-    fn at(&self, positions: RangeInclusive<usize>) -> impl Iterator<Item = usize> {
-        self.0.iter().flat_map(move |block| {
-            let first = block.position.max(*positions.start());
-            let end = (block.position + block.len).min(positions.end() + 1);
-            (first..end).map(|position| block.number + position - block.position)
-        })
-    }
-}
-
-/// The numbers of the free states that constraints between states take, and initial equations, each of those it reads itself or
-/// through definitions.
-fn take(dae: &Dae, equations: &[(Range, ExprId, Origin)], free: &Free) -> BTreeSet<usize> {
-    let mut edges = Vec::new();
-    for selection in &dae.selections {
-        let candidates = selection.candidates.iter();
-        let mut own: Vec<usize> = candidates
-            .flat_map(|&position| free.at(position..=position))
-            .collect();
-        own.sort_unstable();
-        edges.extend(std::iter::repeat_n(own, selection.constraints.len()));
-    }
-    for (range, value, _) in equations {
-        let mut own = Vec::new();
-        let mut pending = vec![*value];
-        let mut read = Vec::new();
-        while let Some(root) = pending.pop() {
-            for id in dae.exprs.below(&[root]) {
-                let (Expr::Var(var, index) | Expr::Der(var, index)) = dae.exprs[id] else {
-                    continue;
-                };
-                if !read.contains(&var) {
-                    read.push(var);
-                    let of = dae.definitions.iter().filter(|d| d.var == var);
-                    pending.extend(of.map(|definition| definition.value));
-                }
-                let Some(place) = dae.places[var].filter(|place| place.space == Space::Unknown)
-                else {
-                    continue;
-                };
-                let (first, last) = System::interval(index, *range);
-                own.extend(free.at(place.base + first..=place.base + last));
-            }
-        }
-        // What stands first in the list is taken first.
-        own.sort_unstable();
-        own.dedup();
-        // An equation over a range takes as many states as it has values.
-        edges.extend(std::iter::repeat_n(own, range.len()));
-    }
-    // Of an array with many elements few are read.
-    let read: BTreeSet<usize> = edges.iter().flatten().copied().collect();
-    let read: Vec<usize> = read.into_iter().collect();
-    for number in edges.iter_mut().flatten() {
-        *number = read.partition_point(|own| own < number);
-    }
-    let graph = Bipartite {
-        edges,
-        n_right: read.len(),
-    };
-    let matching = graph.maximum_matching();
-    let taken = read.into_iter().zip(matching.of_right);
-    taken
-        .filter_map(|(number, by)| by.map(|_| number))
-        .collect()
 }
 
 fn too_many(

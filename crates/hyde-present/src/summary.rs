@@ -8,6 +8,7 @@ use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
 use hyde_study::Project;
 use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::time::Duration;
 
@@ -49,8 +50,10 @@ pub fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -
             significant(t, 4)
         );
     }
-    let found = |name: &&String| run.results.yielded.iter().any(|y| y.name == **name);
-    let filled = compiled.states.filled.iter().filter(|name| !found(name));
+    let found = run.results.yielded.iter().map(|y| y.name.as_str());
+    let found: BTreeSet<&str> = found.collect();
+    let filled = compiled.states.filled.iter();
+    let filled = filled.filter(|name| !found.contains(name.as_str()));
     let filled: Vec<&str> = filled.map(String::as_str).collect();
     if !filled.is_empty() {
         let list = filled.join(", ");

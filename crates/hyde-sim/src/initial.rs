@@ -213,12 +213,13 @@ impl Shape {
         };
         let size = n + states.len() + found.len() + delays;
         let mut fixed: Vec<usize> = state.pinned.iter().map(|(position, _)| *position).collect();
+        let released = state.released.states();
         for condition in &program.initial {
             if let InitialCondition::Fixed {
                 state: first, len, ..
             } = condition
             {
-                let holds = |&i: &usize| state.differential[i] && !state.released.has_state(i);
+                let holds = |&i: &usize| state.differential[i] && !released.contains(&i);
                 fixed.extend((*first..*first + *len).filter(holds));
             }
         }

@@ -7,6 +7,8 @@
 //! them, with what is not fixed moved off its guess, where a derivative may be 0 by chance. Columns are taken in their order
 //! (a greedy basis of a matroid is the best one). Where there are no such numbers, the compiler's choice by names stands.
 
+mod table;
+
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::At;
@@ -14,10 +16,9 @@ use crate::released::{Column, Released};
 use crate::results::Yielded;
 use crate::state::{State, places_to_find};
 use hyde_diag::Origin;
-use hyde_program::{Firmness, Function, InitialCondition, Wrt};
-
-/// A derivative is 0 below this part of what its terms amount to.
-const ZERO: f64 = 1e-9;
+use hyde_program::{Firmness, Function, InitialCondition};
+use std::collections::BTreeSet;
+use table::Table;
 
 /// How far what is not fixed is moved off its guess: relative, and absolute.
 const MOVED: f64 = 1e-2;
@@ -72,7 +73,7 @@ pub(crate) fn choose(
     let At { t, y, .. } = at;
     let candidates = candidates(state);
     let may_yield = candidates.partition_point(|c| c.firmness < Firmness::Given);
-    let table = Table::new(state, consistent, at, &candidates, count);
+    let table = away_from_guesses(state, consistent, at, &candidates, count);
     let chosen = match table {
         Some(mut table) => {
             let chosen = table.basis(may_yield);
@@ -129,6 +130,31 @@ fn candidates(state: &State<'_>) -> Vec<Candidate> {
     found
 }
 
+/// The derivatives of the initial equations with what is not fixed moved off its guess. `None` where there are no numbers.
+fn away_from_guesses(
+    state: &mut State<'_>,
+    consistent: &mut Consistent,
+    at: At<'_>,
+    candidates: &[Candidate],
+    count: usize,
+) -> Option<Table> {
+    // Delayed values are unknowns of the start as well, and follow the states.
+    if !state.program.delays.is_empty() {
+        return None;
+    }
+    let before = state.p.clone();
+    let mut moved = at.to_moment();
+    move_off(state, candidates, &mut moved.y);
+    if consistent.solve(state, &mut moved, true).is_err() {
+        state.p.clone_from(&before);
+        moved = at.to_moment();
+    }
+    let columns: Vec<Column> = candidates.iter().map(|c| c.column).collect();
+    let table = Table::new(state, consistent, moved.at(), &columns, count);
+    state.p = before;
+    table
+}
+
 /// The choice by the names that equations read.
 fn by_names(state: &State<'_>, candidates: &[Candidate], count: usize) -> Vec<usize> {
     let yields = |candidate: &Candidate| match candidate.column {
@@ -145,17 +171,15 @@ fn by_names(state: &State<'_>, candidates: &[Candidate], count: usize) -> Vec<us
 
 /// Initial equations that nothing which may yield can meet, and the fixed starts that stand against them.
 fn conflict(state: &State<'_>, table: &Table, candidates: &[Candidate], t: f64) -> Box<Failure> {
-    let mut against = Vec::new();
     let mut origins = Vec::new();
-    for &row in &table.open_rows() {
+    let mut read = BTreeSet::new();
+    for row in table.open() {
         origins.extend(equation_of(state, row));
+        read.extend(table.columns_of(row));
     }
-    for (number, candidate) in candidates.iter().enumerate() {
-        let reads = table
-            .open_rows()
-            .iter()
-            .any(|&row| table.counts(row, number));
-        if let (true, Column::State(position)) = (reads, candidate.column) {
+    let mut against = Vec::new();
+    for candidate in read.into_iter().map(|number| &candidates[number]) {
+        if let Column::State(position) = candidate.column {
             against.push(state.program.unknown_name(position));
             origins.extend(candidate.origin.clone());
         }
@@ -177,147 +201,6 @@ fn equation_of(state: &State<'_>, row: usize) -> Option<Origin> {
         }
     }
     None
-}
-
-/// The derivatives of the initial equations by candidates, with what their terms amount to.
-struct Table {
-    rows: Vec<Vec<f64>>,
-    terms: Vec<Vec<f64>>,
-    /// Rows that a chosen column was taken for.
-    used: Vec<bool>,
-}
-
-impl Table {
-    /// `None` where consistent values do not follow the states.
-    fn new(
-        state: &mut State<'_>,
-        consistent: &mut Consistent,
-        at: At<'_>,
-        candidates: &[Candidate],
-        count: usize,
-    ) -> Option<Self> {
-        // Delayed values are unknowns of the start as well, and follow the states.
-        if !state.program.delays.is_empty() {
-            return None;
-        }
-        let before = state.p.clone();
-        let mut moved = at.to_moment();
-        move_off(state, candidates, &mut moved.y);
-        if consistent.solve(state, &mut moved, true).is_err() {
-            state.p.clone_from(&before);
-            moved = at.to_moment();
-        }
-        let table = Self::at(state, consistent, moved.at(), candidates, count);
-        state.p = before;
-        table
-    }
-
-    fn at(
-        state: &mut State<'_>,
-        consistent: &mut Consistent,
-        at: At<'_>,
-        candidates: &[Candidate],
-        count: usize,
-    ) -> Option<Self> {
-        let program = state.program;
-        let residual = state.partials(Function::Residual, at);
-        let initial = state.partials(Function::Initial, at);
-        let mut follow: Vec<Vec<f64>> = Vec::new();
-        let mut direct: Vec<Vec<f64>> = Vec::new();
-        for candidate in candidates {
-            let (mut of_residual, mut of_initial) = (vec![0.0; at.y.len()], vec![0.0; count]);
-            match candidate.column {
-                Column::State(position) => {
-                    let wrt = Wrt::Unknown(position);
-                    let entries = program.partials(Function::Residual).iter().zip(&residual);
-                    for (entry, value) in entries.filter(|(entry, _)| entry.wrt == wrt) {
-                        of_residual[entry.row] += value;
-                    }
-                    let entries = program.partials(Function::Initial).iter().zip(&initial);
-                    let entries = entries.filter(|(e, _)| e.wrt == wrt && e.row < count);
-                    entries.for_each(|(entry, value)| of_initial[entry.row] += value);
-                }
-                Column::Parameter(place) => {
-                    of_residual = by_parameter(state, place, Function::Residual, at);
-                    of_initial = by_parameter(state, place, Function::Initial, at);
-                }
-            }
-            follow.push(of_residual);
-            direct.push(of_initial);
-        }
-        if !consistent.correct(state, at, &mut follow) {
-            return None;
-        }
-        let width = candidates.len();
-        let mut rows = vec![vec![0.0; width]; count];
-        for (column, values) in direct.iter().enumerate() {
-            for (row, value) in rows.iter_mut().zip(values) {
-                row[column] = *value;
-            }
-        }
-        let mut terms: Vec<Vec<f64>> = rows
-            .iter()
-            .map(|row| row.iter().map(|value: &f64| value.abs()).collect())
-            .collect();
-        for (entry, value) in program.partials(Function::Initial).iter().zip(&initial) {
-            let followed = match entry.wrt {
-                Wrt::Unknown(unknown) if !state.differential[unknown] => unknown,
-                Wrt::Derivative(unknown) => unknown,
-                Wrt::Unknown(_)
-                | Wrt::Parameter(_)
-                | Wrt::Memory(_)
-                | Wrt::Delayed(_)
-                | Wrt::Time => continue,
-            };
-            if entry.row < count {
-                for (column, follow) in follow.iter().enumerate() {
-                    let term = value * follow[followed];
-                    rows[entry.row][column] -= term;
-                    terms[entry.row][column] += term.abs();
-                }
-            }
-        }
-        let finite = rows.iter().flatten().all(|value| value.is_finite());
-        finite.then(|| Self {
-            used: vec![false; rows.len()],
-            rows,
-            terms,
-        })
-    }
-
-    fn counts(&self, row: usize, column: usize) -> bool {
-        self.rows[row][column].abs() > ZERO * self.terms[row][column]
-    }
-
-    fn open_rows(&self) -> Vec<usize> {
-        (0..self.rows.len())
-            .filter(|&row| !self.used[row])
-            .collect()
-    }
-
-    /// The first independent columns of those below `end`, by elimination.
-    fn basis(&mut self, end: usize) -> Vec<usize> {
-        let mut found = Vec::new();
-        for column in 0..end {
-            let clear = |row: usize| self.rows[row][column].abs() / self.terms[row][column];
-            let open = self.open_rows();
-            let open = open.into_iter().filter(|&row| self.counts(row, column));
-            let Some(pivot) = open.max_by(|&a, &b| clear(a).total_cmp(&clear(b))) else {
-                continue;
-            };
-            found.push(column);
-            self.used[pivot] = true;
-            let (of_pivot, size) = (self.rows[pivot].clone(), self.terms[pivot].clone());
-            for row in self.open_rows() {
-                let factor = self.rows[row][column] / of_pivot[column];
-                for place in 0..of_pivot.len() {
-                    self.rows[row][place] -= factor * of_pivot[place];
-                    self.terms[row][place] += factor.abs() * size[place];
-                }
-            }
-        }
-        found
-    }
 }
 
 /// Moves what is not declared fixed off its guess, each by another part.

@@ -1,6 +1,7 @@
 //! [`Released`]: the states and the parameters that initial equations determine.
 
 use hyde_program::Firmness;
+use std::collections::BTreeSet;
 
 /// What initial equations may determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,9 +17,13 @@ pub(crate) enum Column {
 pub(crate) struct Released(pub(crate) Vec<(Column, Firmness, f64)>);
 
 impl Released {
-    pub(crate) fn has_state(&self, position: usize) -> bool {
-        let state = Column::State(position);
-        self.0.iter().any(|(column, ..)| *column == state)
+    /// The positions of states.
+    pub(crate) fn states(&self) -> BTreeSet<usize> {
+        let state = |(column, ..): &(Column, Firmness, f64)| match *column {
+            Column::State(position) => Some(position),
+            Column::Parameter(_) => None,
+        };
+        self.0.iter().filter_map(state).collect()
     }
 
     /// The places of parameters.

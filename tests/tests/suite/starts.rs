@@ -1,6 +1,6 @@
 //! Initial equations behind limiters, relations of the time and derivatives of variables that are no states.
 
-use crate::models::{close, solve};
+use crate::models::{Solved, close, solve};
 use hyde_program::Firmness;
 
 #[test]
@@ -112,4 +112,35 @@ fn roots_at_zero_have_a_value() {
     let v = terminal * (5.0 / terminal).tanh();
     close(drained.column("vx")[last], 0.6 * v, 1e-6);
     close(drained.column("vy")[last], 0.8 * v, 1e-6);
+}
+
+/// By dense elimination, or by lists of all elements for each, they would take minutes.
+#[test]
+fn an_array_of_initial_equations_determines_its_elements_and_is_told_once() {
+    let rod = solve("starts", "rod");
+    for (name, cell) in [("first", 1.0), ("middle", 1000.0), ("last", 2000.0)] {
+        let found = rod.column(name);
+        close(found[0], cell / 2001.0, 1e-12);
+        close(found[found.len() - 1], found[0], 1e-9);
+    }
+    let told = |solved: &Solved| {
+        let results = &solved.run.results;
+        hyde_present::start::lines(&solved.compiled.program, &results.yielded)
+    };
+    assert_eq!(
+        told(&rod),
+        ["found at the start: x[1..2000] = 4.998e-4 to 0.9995 (free)"]
+    );
+    let counted = solve("starts", "counted");
+    close(counted.column("first")[0], 1.0, 0.0);
+    close(counted.column("last")[0], 2000.0, 0.0);
+    // 7 = x[3] - y
+    close(counted.column("y")[0], -4.0, 1e-14);
+    assert_eq!(
+        told(&counted),
+        [
+            "found at the start: x[1..2000] = 1 to 2000 (free)",
+            "found at the start: y = -4 (free)"
+        ]
+    );
 }
