@@ -6,6 +6,9 @@
 //! stays that of its begin, and the rate a belief: an algebraic variable, which the error test leaves out, can drift off and
 //! grow from step to step without ever being iterated twice. Here the estimate grows with the steps since it was seen, so
 //! that it is seen again before it can be wrong by much.
+//!
+//! IDA gives up where the second correction is not smaller than the first. A force that bends with an acceleration,
+//! `F = F1*tanh(der(v)/a1)`, is met by a Jacobian of its place in three: the first mends the acceleration.
 
 use std::ffi::{c_int, c_void};
 use std::ptr;
@@ -16,6 +19,9 @@ const NEW_JACOBIAN: f64 = 20.0;
 const NEW_STEP: f64 = 100.0;
 /// Corrections that fall slower than this do not converge.
 const LARGEST_RATE: f64 = 0.9;
+/// With the Jacobian of this step the second correction may be so many times the first: the norm knows nothing of derivatives,
+/// and where these were predicted badly the first correction is small by chance.
+const SECOND: f64 = 4.0;
 /// With an old Jacobian slower than this: IDA begins again with a new one.
 const SLOW_RATE: f64 = 0.3;
 /// A first correction so far below the tolerance needs no second.
@@ -88,7 +94,11 @@ impl Convergence {
                 false => SLOW_RATE,
             };
             if rate > largest || rate.is_nan() {
-                return sys::SUN_NLS_CONV_RECVR;
+                let second = self.current && iteration == 1 && rate <= SECOND;
+                return match second {
+                    true => sys::SUN_NLS_CONTINUE,
+                    false => sys::SUN_NLS_CONV_RECVR,
+                };
             }
             self.part = rate / (1.0 - rate);
             self.least = match self.current {
@@ -150,5 +160,23 @@ mod tests {
         };
         assert_eq!(believed(), 19);
         assert_eq!(own.test(1, 0.5, 5.0, 0.33), sys::SUN_NLS_CONV_RECVR);
+    }
+
+    #[test]
+    fn a_second_correction_may_be_the_largest_with_the_jacobian_of_here() {
+        let mut own = Convergence::new();
+        assert_eq!(own.test(0, 332.0, 5.0, 0.33), sys::SUN_NLS_CONTINUE);
+        assert_eq!(own.test(1, 415.0, 5.0, 0.33), sys::SUN_NLS_CONTINUE);
+        assert_eq!(own.test(2, 0.05, 5.0, 0.33), 0);
+        // Not with an old one, not the third, and not without bounds.
+        assert_eq!(own.test(0, 332.0, 5.0, 0.33), sys::SUN_NLS_CONTINUE);
+        assert_eq!(own.test(1, 415.0, 5.0, 0.33), sys::SUN_NLS_CONV_RECVR);
+        own.renew();
+        assert_eq!(own.test(0, 332.0, 5.0, 0.33), sys::SUN_NLS_CONTINUE);
+        assert_eq!(own.test(1, 415.0, 5.0, 0.33), sys::SUN_NLS_CONTINUE);
+        assert_eq!(own.test(2, 400.0, 5.0, 0.33), sys::SUN_NLS_CONV_RECVR);
+        own.renew();
+        assert_eq!(own.test(0, 332.0, 5.0, 0.33), sys::SUN_NLS_CONTINUE);
+        assert_eq!(own.test(1, 4150.0, 5.0, 0.33), sys::SUN_NLS_CONV_RECVR);
     }
 }
