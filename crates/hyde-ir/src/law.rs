@@ -25,6 +25,8 @@ pub enum LawRole {
     Rate,
     /// Any of these three, of which the past counts: the shape multiplies those of the speed.
     Motion,
+    /// The acceleration of what moves or slips.
+    Acceleration,
     /// Where something is that moves or slips.
     Place,
     /// The same where it is not an angle.
@@ -46,6 +48,8 @@ pub enum LawAxis {
     Speed,
     /// A place, or what stands for it: `x`.
     Place,
+    /// The derivative of a speed: `a`.
+    Acceleration,
     /// The time: `t`.
     Time,
 }
@@ -53,13 +57,13 @@ pub enum LawAxis {
 /// What an input of a shape is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LawInput {
-    /// The variable itself: `v`, `x`, `t`.
+    /// The variable itself: `v`, `x`, `a`, `t`.
     Variable(LawAxis),
-    /// A round value of it: `v1`, `x1`, `t1`.
+    /// A round value of it: `v1`, `x1`, `a1`, `t1`.
     Round(LawAxis),
     /// The least value that records show: `x_min`, `t_min`.
     Least(LawAxis),
-    /// The greatest: `x_max`, `t_max`; of a speed the greatest magnitude, `v_max`.
+    /// The greatest: `x_max`, `t_max`; of a speed and an acceleration the greatest magnitude, `v_max`, `a_max`.
     Greatest(LawAxis),
     /// The constant of that number.
     Constant(usize),
@@ -142,7 +146,7 @@ pub enum LawPiece {
 pub struct LawShape {
     /// The function, with its package.
     pub name: String,
-    /// What it is, in words: `{v}` and `{x}` are the words of the site, `{vs}` is the value of a constant.
+    /// What it is, in words: `{v}`, `{x}` and `{a}` are the words of the site, `{vs}` is the value of a constant.
     pub words: String,
     /// Where it is tried: at sites with one of these roles.
     pub roles: Vec<LawRole>,
@@ -166,11 +170,12 @@ pub struct LawShape {
 
 impl LawRole {
     /// Each role with its word.
-    pub const ALL: [(Self, &'static str); 10] = [
+    pub const ALL: [(Self, &'static str); 11] = [
         (Self::Speed, "speed"),
         (Self::Slip, "slip"),
         (Self::Rate, "rate"),
         (Self::Motion, "motion"),
+        (Self::Acceleration, "acceleration"),
         (Self::Place, "place"),
         (Self::Distance, "distance"),
         (Self::Angle, "angle"),
@@ -187,6 +192,7 @@ impl LawRole {
             Self::Place | Self::Distance | Self::Angle | Self::Stretch | Self::Demand => {
                 LawAxis::Place
             }
+            Self::Acceleration => LawAxis::Acceleration,
             Self::Time => LawAxis::Time,
         }
     }
@@ -199,13 +205,16 @@ impl LawInput {
         Some(match name {
             "v" => Self::Variable(LawAxis::Speed),
             "x" => Self::Variable(LawAxis::Place),
+            "a" => Self::Variable(LawAxis::Acceleration),
             "t" => Self::Variable(LawAxis::Time),
             "v1" => Self::Round(LawAxis::Speed),
             "x1" => Self::Round(LawAxis::Place),
+            "a1" => Self::Round(LawAxis::Acceleration),
             "t1" => Self::Round(LawAxis::Time),
             "x_min" => Self::Least(LawAxis::Place),
             "t_min" => Self::Least(LawAxis::Time),
             "v_max" => Self::Greatest(LawAxis::Speed),
+            "a_max" => Self::Greatest(LawAxis::Acceleration),
             "x_max" => Self::Greatest(LawAxis::Place),
             "t_max" => Self::Greatest(LawAxis::Time),
             _ => return None,

@@ -17,8 +17,12 @@ pub fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             let seen = &own.law.seen;
             out.push('\n');
             let [place, speed] = own.law.site.kind.variables();
+            let acceleration = match own.law.is_of_acceleration() {
+                true => format!("acceleration to {}, ", significant(seen.acceleration, 3)),
+                false => String::new(),
+            };
             let range = format!(
-                "{}: {speed} to {}, {place} {} to {}, time {} to {} (SI)",
+                "{}: {speed} to {}, {acceleration}{place} {} to {}, time {} to {} (SI)",
                 own.law.site.path,
                 significant(seen.speed, 3),
                 significant(seen.place.0, 3),
@@ -113,6 +117,7 @@ pub fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
                 "time": force.time,
                 "place": force.place,
                 "speed": force.speed,
+                "acceleration": force.acceleration,
                 "force": force.force,
                 "deviation": force.deviation,
             })
@@ -159,6 +164,7 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
         "values": values,
         "seen": {
             "speed": seen.speed,
+            "acceleration": seen.acceleration,
             "place": [seen.place.0, seen.place.1],
             "time": [seen.time.0, seen.time.1],
         },

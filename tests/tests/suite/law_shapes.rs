@@ -45,32 +45,35 @@ fn axis_of(axis: LawAxis) -> &'static str {
     match axis {
         LawAxis::Speed => "v",
         LawAxis::Place => "x",
+        LawAxis::Acceleration => "a",
         LawAxis::Time => "t",
     }
 }
 
-/// Where shapes are evaluated: v, x, t, with what records show of them, and the constants.
+/// Where shapes are evaluated: v, x, t, a, with what records show of them, and the constants.
 #[derive(Clone, Copy)]
 struct Point {
     v: f64,
     x: f64,
     t: f64,
+    a: f64,
     constants: [f64; 2],
 }
 
-/// Round values of v, x, t, and the greatest ones; x and t begin at 0.1.
-const ROUND: [f64; 3] = [0.2, 0.05, 2.0];
-const GREATEST: [f64; 3] = [0.24, 0.07, 3.1];
+/// Round values of v, x, t, a, and the greatest ones; x and t begin at 0.1.
+const ROUND: [f64; 4] = [0.2, 0.05, 2.0, 5.0];
+const GREATEST: [f64; 4] = [0.24, 0.07, 3.1, 6.2];
 const LEAST: f64 = 0.1;
 
 fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
-    let values = |axis: LawAxis, all: [f64; 3]| match axis {
+    let values = |axis: LawAxis, all: [f64; 4]| match axis {
         LawAxis::Speed => all[0],
         LawAxis::Place => all[1],
         LawAxis::Time => all[2],
+        LawAxis::Acceleration => all[3],
     };
     let leaf = |leaf| match shape.input(leaf) {
-        Some(LawInput::Variable(axis)) => Ok(values(axis, [at.v, at.x, at.t])),
+        Some(LawInput::Variable(axis)) => Ok(values(axis, [at.v, at.x, at.t, at.a])),
         Some(LawInput::Round(axis)) => Ok(values(axis, ROUND)),
         Some(LawInput::Least(_)) => Ok(LEAST),
         Some(LawInput::Greatest(axis)) => Ok(values(axis, GREATEST)),
@@ -82,88 +85,103 @@ fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
     shape.exprs.evaluate(of.value, leaf).unwrap()
 }
 
-/// Of each shape its text and its closed form, of v, x, t and two constants.
-type Form = fn(f64, f64, f64, f64, f64) -> f64;
-const FORMS: [(&str, &str, Form); 31] = [
-    ("speed", "v/v1", |v, _, _, _, _| v / 0.2),
-    ("magnitude", "noEvent(abs(v))/v1", |v, _, _, _, _| {
+/// Of each shape its text and its closed form, of v, x, t, two constants and a.
+type Form = fn(f64, f64, f64, f64, f64, f64) -> f64;
+const FORMS: [(&str, &str, Form); 36] = [
+    ("speed", "v/v1", |v, _, _, _, _, _| v / 0.2),
+    ("magnitude", "noEvent(abs(v))/v1", |v, _, _, _, _, _| {
         v.abs() / 0.2
     }),
     (
         "signed_square",
         "v*noEvent(abs(v))/v1^2",
-        |v, _, _, _, _| v * v.abs() / 0.04,
+        |v, _, _, _, _, _| v * v.abs() / 0.04,
     ),
-    ("square", "(v/v1)^2", |v, _, _, _, _| v * v / 0.04),
-    ("cube", "(v/v1)^3", |v, _, _, _, _| v * v * v / 0.008),
-    ("switching", "v/(noEvent(abs(v)) + vs)", |v, _, _, a, _| {
-        v / (v.abs() + a)
-    }),
-    ("turning", "tanh(v/vs)", |v, _, _, a, _| (v / a).tanh()),
+    ("square", "(v/v1)^2", |v, _, _, _, _, _| v * v / 0.04),
+    ("cube", "(v/v1)^3", |v, _, _, _, _, _| v * v * v / 0.008),
+    (
+        "switching",
+        "v/(noEvent(abs(v)) + vs)",
+        |v, _, _, a, _, _| v / (v.abs() + a),
+    ),
+    ("turning", "tanh(v/vs)", |v, _, _, a, _, _| (v / a).tanh()),
     (
         "forwards",
         "(1 + v/(noEvent(abs(v)) + vs))/2",
-        |v, _, _, a, _| 0.5 + 0.5 * v / (v.abs() + a),
+        |v, _, _, a, _, _| 0.5 + 0.5 * v / (v.abs() + a),
     ),
     (
         "backwards",
         "(1 - v/(noEvent(abs(v)) + vs))/2",
-        |v, _, _, a, _| 0.5 - 0.5 * v / (v.abs() + a),
+        |v, _, _, a, _, _| 0.5 - 0.5 * v / (v.abs() + a),
     ),
-    ("lagged", "late/v1", |_, _, _, _, _| 0.7 / 0.2),
-    ("falling", "exp(-noEvent(abs(v))/vs)", |v, _, _, a, _| {
+    ("lagged", "late/v1", |_, _, _, _, _, _| 0.7 / 0.2),
+    ("falling", "exp(-noEvent(abs(v))/vs)", |v, _, _, a, _, _| {
         (-v.abs() / a).exp()
     }),
-    ("bell", "exp(-(v/vs)^2)", |v, _, _, a, _| {
+    ("bell", "exp(-(v/vs)^2)", |v, _, _, a, _, _| {
         (-(v / a).powi(2)).exp()
     }),
     (
         "power",
         "noEvent(abs(v))/v1*(noEvent(abs(v))/v1 + 1e-6)^(p - 1)",
-        |v, _, _, a, _| v.abs() / 0.2 * (v.abs() / 0.2 + 1e-6).powf(a - 1.0),
+        |v, _, _, a, _, _| v.abs() / 0.2 * (v.abs() / 0.2 + 1e-6).powf(a - 1.0),
     ),
     (
         "peak_at_speed",
         "exp(-((noEvent(abs(v)) - v0)/dv)^2)",
-        |v, _, _, a, b| (-((v.abs() - a) / b).powi(2)).exp(),
+        |v, _, _, a, b, _| (-((v.abs() - a) / b).powi(2)).exp(),
     ),
-    ("place", "x/x1", |_, x, _, _, _| x / 0.05),
-    ("place_from", "x/x1", |_, x, _, _, _| x / 0.05),
-    ("place_from", "1", |_, _, _, _, _| 1.0),
-    ("square_of_place", "(x/x1)^2", |_, x, _, _, _| {
+    ("place", "x/x1", |_, x, _, _, _, _| x / 0.05),
+    ("place_from", "x/x1", |_, x, _, _, _, _| x / 0.05),
+    ("place_from", "1", |_, _, _, _, _, _| 1.0),
+    ("square_of_place", "(x/x1)^2", |_, x, _, _, _, _| {
         x * x / 0.0025
     }),
     (
         "magnitude_of_place",
         "noEvent(abs(x))/x1",
-        |_, x, _, _, _| x.abs() / 0.05,
+        |_, x, _, _, _, _| x.abs() / 0.05,
     ),
-    ("hardening", "x*noEvent(abs(x))/x1^2", |_, x, _, _, _| {
+    ("hardening", "x*noEvent(abs(x))/x1^2", |_, x, _, _, _, _| {
         x * x.abs() / 0.0025
     }),
-    ("cube_of_place", "(x/x1)^3", |_, x, _, _, _| {
+    ("cube_of_place", "(x/x1)^3", |_, x, _, _, _, _| {
         x * x * x / 1.25e-4
     }),
-    ("yielding", "x/(noEvent(abs(x)) + x0)", |_, x, _, a, _| {
-        x / (x.abs() + a)
-    }),
-    ("peak", "exp(-((x - x0)/width)^2)", |_, x, _, a, b| {
+    (
+        "yielding",
+        "x/(noEvent(abs(x)) + x0)",
+        |_, x, _, a, _, _| x / (x.abs() + a),
+    ),
+    ("peak", "exp(-((x - x0)/width)^2)", |_, x, _, a, b, _| {
         (-((x - a) / b).powi(2)).exp()
     }),
-    ("step", "(1 + tanh((x - x0)/width))/2", |_, x, _, a, b| {
-        0.5 + 0.5 * ((x - a) / b).tanh()
-    }),
-    ("wave", "sin(2*pi*x/period)", |_, x, _, a, _| {
+    (
+        "step",
+        "(1 + tanh((x - x0)/width))/2",
+        |_, x, _, a, b, _| 0.5 + 0.5 * ((x - a) / b).tanh(),
+    ),
+    ("wave", "sin(2*pi*x/period)", |_, x, _, a, _, _| {
         (std::f64::consts::TAU * x / a).sin()
     }),
-    ("wave", "cos(2*pi*x/period)", |_, x, _, a, _| {
+    ("wave", "cos(2*pi*x/period)", |_, x, _, a, _, _| {
         (std::f64::consts::TAU * x / a).cos()
     }),
-    ("order", "sin(N*x)", |_, x, _, a, _| (a * x).sin()),
-    ("order", "cos(N*x)", |_, x, _, a, _| (a * x).cos()),
-    ("elapsed", "t/t1", |_, _, t, _, _| t / 2.0),
-    ("fading", "exp(-t/tau)", |_, _, t, a, _| (-t / a).exp()),
-    ("coming", "1 - exp(-t/tau)", |_, _, t, a, _| {
+    ("order", "sin(N*x)", |_, x, _, a, _, _| (a * x).sin()),
+    ("order", "cos(N*x)", |_, x, _, a, _, _| (a * x).cos()),
+    ("acceleration", "a/a1", |_, _, _, _, _, a| a / 5.0),
+    (
+        "magnitude_of_acceleration",
+        "noEvent(abs(a))/a1",
+        |_, _, _, _, _, a| a.abs() / 5.0,
+    ),
+    ("pushing", "tanh(a/a0)", |_, _, _, a0, _, a| (a / a0).tanh()),
+    ("warmed", "warmth", |_, _, _, _, _, _| 0.7),
+    ("heated", "x/x1*heat", |_, x, _, _, _, _| x / 0.05 * 0.7),
+    ("elapsed", "t/t1", |_, _, t, _, _, _| t / 2.0),
+    ("fading", "exp(-t/tau)", |_, _, t, a, _, _| (-t / a).exp()),
+    ("coming", "1 - exp(-t/tau)", |_, _, t, a, _, _| {
         1.0 - (-t / a).exp()
     }),
 ];
@@ -183,10 +201,18 @@ fn every_shape_of_the_library_has_its_closed_form_and_its_text() {
             let form = form.unwrap_or_else(|| panic!("{name}: {text}"));
             seen.insert((form.0, form.1));
             assert_eq!(output.is_sum, name == "coming", "{text}");
-            for (v, x, t) in [(0.13, 0.04, 0.3), (-0.07, -0.02, 1.9), (0.0, 0.0, 0.0)] {
+            let points = [[0.13, 0.04, 0.3, 4.1], [-0.07, -0.02, 1.9, -0.04], [0.0; 4]];
+            for [v, x, t, a] in points {
                 let constants = [0.03, 0.011];
-                let own = value(shape, output, Point { v, x, t, constants });
-                let closed = (form.2)(v, x, t, constants[0], constants[1]);
+                let at = Point {
+                    v,
+                    x,
+                    t,
+                    a,
+                    constants,
+                };
+                let own = value(shape, output, at);
+                let closed = (form.2)(v, x, t, constants[0], constants[1], a);
                 assert!(
                     (own - closed).abs() <= 1e-14 * closed.abs().max(1.0),
                     "{name}: {own} {closed}"
@@ -212,7 +238,9 @@ fn filters_are_read_with_their_time_constant_and_their_input() {
         filters,
         [
             "tau*der(late) = v - late",
-            "tau*der(worked) = noEvent(abs(v)) - worked"
+            "tau*der(worked) = noEvent(abs(v)) - worked",
+            "tau*der(warmth) = (v/v1)^2 - warmth",
+            "tau*der(heat) = (x/x1)^2 - heat"
         ]
     );
 }
@@ -237,6 +265,7 @@ fn constants_begin_and_end_where_the_records_say() {
             v: f64::NAN,
             x: f64::NAN,
             t: f64::NAN,
+            a: f64::NAN,
             constants: [0.02, 0.3],
         };
         self::value(shape, &text, at)

@@ -33,12 +33,17 @@ end bodies;
 ";
 
 /// A record of 3 s with the effect on a site, diagnosed.
-fn diagnosed(effect: &str, with: &str) -> Value {
+pub(crate) fn diagnosed(effect: &str, with: &str) -> Value {
     diagnosed_on(&[], effect, with, "few")
 }
 
 /// The same by a study, on another axis: its text with some parts replaced.
-fn diagnosed_on(changes: &[(&str, &str)], effect: &str, with: &str, study: &str) -> Value {
+pub(crate) fn diagnosed_on(
+    changes: &[(&str, &str)],
+    effect: &str,
+    with: &str,
+    study: &str,
+) -> Value {
     let folder = made(changes, effect, with);
     report(folder.path(), &["diagnose", "axis.hyde", study])
 }
@@ -363,25 +368,29 @@ fn a_voltage_of_the_tacho_that_bends_with_speed_is_found_and_written() {
     assert!((size / 0.12 - 1.0).abs() < 0.03, "{size}");
 }
 
-/// The drive has a winding and an amplifier, which gives less than it is asked for the more that is.
+/// The drive has a winding and an amplifier.
+pub(crate) const AMPLIFIER: [(&str, &str); 3] = [
+    (
+        "  Rotational.Drive motor(T = T);",
+        "  Rotational.Drive motor(T = 0.5 [N.m/A]*i);
+  Current i(start = 0, fixed = true);
+  Electrical.CurrentAmplifier amplifier(i_ref = T/(0.5 [N.m/A]), i = i, Kc = 20 [V/A]);",
+    ),
+    (
+        "  connect(motor.a, rotor.a);",
+        "  connect(motor.a, rotor.a);\n  2 [mH]*der(i) = amplifier.u - 0.5 [ohm]*i;",
+    ),
+    (
+        "import Translational.*;",
+        "import Translational.*;\nimport Electrical;",
+    ),
+];
+
+/// The amplifier gives less than it is asked for the more that is.
 #[test]
 fn an_amplifier_that_gives_less_and_less_is_found_and_written() {
-    let winding = "  Rotational.Drive motor(T = 0.5 [N.m/A]*i);
-  Current i(start = 0, fixed = true);
-  Electrical.CurrentAmplifier amplifier(i_ref = T/(0.5 [N.m/A]), i = i, Kc = 20 [V/A]);";
-    let changes = [
-        ("  Rotational.Drive motor(T = T);", winding),
-        (
-            "  connect(motor.a, rotor.a);",
-            "  connect(motor.a, rotor.a);\n  2 [mH]*der(i) = amplifier.u - 0.5 [ohm]*i;",
-        ),
-        (
-            "import Translational.*;",
-            "import Translational.*;\nimport Electrical;",
-        ),
-    ];
     let found = diagnosed_on(
-        &changes,
+        &AMPLIFIER,
         "effect Odd on Electrical.CurrentAmplifier
            wrap demand by demand*(1 - 0.05*noEvent(abs(demand))/(10 [A]));
          end Odd;",

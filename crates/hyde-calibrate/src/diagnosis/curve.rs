@@ -16,7 +16,10 @@ use super::inquiry::Inquiry;
 use super::projection::dot;
 use super::stage::{Ground, flat};
 use super::thresholds::Thresholds;
-use super::unknown::{CURVE_PROBE, Felt, Kind, PROBE_SIZES, Site, Variable, probe, strongest};
+use super::unknown::{
+    CURVE_PROBE, Felt, Kind, PROBE_BY_ACCELERATION, PROBE_SIZES, Site, Tells, Variable, probe,
+    strongest,
+};
 use crate::fit::inflation;
 use crate::observer::{Direction, Forces, Innovations, Own, Track, Vectors, When};
 use crate::records::Recording;
@@ -59,10 +62,8 @@ impl Over {
     #[must_use]
     pub fn unit(self, kind: &Kind) -> String {
         match self {
-            Self::Variable(Variable::Speed) => kind.speed_unit(),
-            Self::Variable(Variable::Time | Variable::SpeedByTime) => "s".to_owned(),
-            Self::Variable(Variable::Place | Variable::Turn | Variable::SpeedByPlace)
-            | Self::Period(_) => kind.place_unit(),
+            Self::Variable(variable) => variable.unit(kind),
+            Self::Period(_) => kind.place_unit(),
         }
     }
 }
@@ -186,14 +187,19 @@ impl Diagnosis {
         site: &Site,
     ) -> Option<Vec<Along>> {
         let stage = self.stage();
-        let built = self.built(inquiry, &stage.numbers(), &[probe(site, CURVE_PROBE)])?;
-        let probe = built.paths.last()?;
-        let set = ground.set_in(&built.program, &stage.values());
         let (_, path) = stage.effects.get(number)?;
         let sizes = Hypothesis::names(&hypothesis.sizes, path);
-        let each = ground.recordings.iter();
-        each.map(|recording| Along::of(&built.program, recording, ground, &set, (probe, &sizes)))
-            .collect()
+        let along = |tells: Tells| -> Option<Vec<Along>> {
+            let probe = probe(site, CURVE_PROBE, tells);
+            let built = self.built(inquiry, &stage.numbers(), &[probe])?;
+            let probe = built.paths.last()?;
+            let set = ground.set_in(&built.program, &stage.values());
+            let program = &built.program;
+            let each = ground.recordings.iter();
+            each.map(|recording| Along::of(program, recording, ground, &set, (probe, &sizes)))
+                .collect()
+        };
+        site.kind.probes().iter().copied().find_map(along)
     }
 }
 
@@ -202,6 +208,8 @@ struct Along {
     time: Vec<f64>,
     place: Vec<f64>,
     speed: Vec<f64>,
+    /// 0 where the probe does not tell it.
+    acceleration: Vec<f64>,
     /// NaN in a row where no force acts.
     force: Vec<f64>,
     innovations: Innovations,
@@ -231,6 +239,8 @@ impl Along {
             directions.push(with(&mut std::iter::once(format!("{probe}.{name}")), 1.0)?);
         }
         directions.push(with(&mut sizes.iter().cloned(), 0.0)?);
+        let by_acceleration = format!("{probe}.{PROBE_BY_ACCELERATION}");
+        directions.extend(with(&mut std::iter::once(by_acceleration), 1.0));
         let track = Track::new(program, recording, ground.observer, set).ok()?;
         let p = recording.parameters(program, set);
         let mut own = Own::new(program, &p, &directions);
@@ -240,11 +250,12 @@ impl Along {
             time: Vec::new(),
             place: Vec::new(),
             speed: Vec::new(),
+            acceleration: Vec::new(),
             force: Vec::new(),
             innovations: track.route.innovations.clone(),
         };
         let mut room = Vectors::default();
-        let mut last = [0.0, 0.0];
+        let mut last = [0.0; 3];
         for row in 0..track.route.rows.len() {
             if own.shown {
                 let at = track.point(row, When::Before, &p, &mut room);
@@ -255,14 +266,15 @@ impl Along {
             found.time.push(at.t);
             let shown = strongest(&forces).or_else(|| strongest(&by_output));
             let force = match shown.as_deref() {
-                Some([place, speed, without]) => {
-                    last = [*place, *speed];
+                Some([place, speed, without, more @ ..]) => {
+                    last = [*place, *speed, more.first().copied().unwrap_or(0.0)];
                     -without
                 }
                 _ => f64::NAN,
             };
             found.place.push(last[0]);
             found.speed.push(last[1]);
+            found.acceleration.push(last[2]);
             found.force.push(force);
         }
         Some(found)
@@ -274,6 +286,7 @@ impl Along {
             Over::Variable(Variable::Speed) if kind.is_grip() => self.speed[row].abs(),
             Over::Variable(Variable::Speed) => self.speed[row],
             Over::Variable(Variable::Time | Variable::SpeedByTime) => self.time[row],
+            Over::Variable(Variable::Acceleration) => self.acceleration[row],
             Over::Variable(Variable::Turn) => self.place[row].rem_euclid(TAU),
             Over::Variable(Variable::Place | Variable::SpeedByPlace) => self.place[row],
             Over::Period(length) => self.place[row].rem_euclid(length),
@@ -312,6 +325,10 @@ fn best(
     }
     let others = [Variable::Place, Variable::Speed, Variable::Time];
     all.extend(others.map(Over::Variable));
+    let accelerations = || runs.iter().flat_map(|run| run.acceleration.iter());
+    if accelerations().any(|acceleration| *acceleration != 0.0) {
+        all.push(Over::Variable(Variable::Acceleration));
+    }
     let mut best: Option<(Over, f64)> = None;
     for over in all {
         let share = share(runs, kind, over);

@@ -40,7 +40,7 @@ pub use map::{Map, Panel, Variable};
 pub(crate) use places::{Answer, Places};
 pub use seen::{Scales, Seen};
 pub use site::{Kind, LawVariable, Site, Written};
-pub(crate) use site::{PROBE as PROBE_SIZES, probe};
+pub(crate) use site::{PROBE as PROBE_SIZES, PROBE_BY_ACCELERATION, Tells, probe};
 
 use super::answer::{Diagnosis, Verdict};
 use super::edges::settled;

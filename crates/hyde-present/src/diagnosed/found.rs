@@ -66,15 +66,12 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
         )
     };
     let best = unknown.map.panels.iter().find(drawn)?;
-    let unit = match best.variable {
-        Variable::Speed => site.kind.speed_unit(),
-        Variable::Time | Variable::SpeedByTime => "s".to_owned(),
-        Variable::Place | Variable::Turn | Variable::SpeedByPlace => site.kind.place_unit(),
-    };
+    let unit = best.variable.unit(&site.kind);
     let at = |latent: &LatentForce, k: usize| match best.variable {
         Variable::Speed if site.kind.is_grip() => latent.speed[k].abs(),
         Variable::Speed => latent.speed[k],
         Variable::Time | Variable::SpeedByTime => latent.time[k],
+        Variable::Acceleration => latent.acceleration[k],
         Variable::Turn => latent.place[k].rem_euclid(std::f64::consts::TAU),
         Variable::Place | Variable::SpeedByPlace => latent.place[k],
     };

@@ -38,14 +38,20 @@ pub(crate) enum Step {
 }
 
 /// The axes of a site.
-const AXES: [LawAxis; 3] = [LawAxis::Speed, LawAxis::Place, LawAxis::Time];
+const AXES: [LawAxis; 4] = [
+    LawAxis::Speed,
+    LawAxis::Place,
+    LawAxis::Acceleration,
+    LawAxis::Time,
+];
 
-/// Whether a shape is tried at a kind of site: of each variable that it is a function of, a role fits.
-pub(crate) fn is_tried(shape: &LawShape, kind: &Kind) -> bool {
+/// Whether a shape is tried at a kind of site: of each variable that it is a function of, a role fits, and the records show it.
+pub(crate) fn is_tried(shape: &LawShape, kind: &Kind, seen: &Seen) -> bool {
     AXES.iter().all(|&axis| {
         let mut roles = shape.roles.iter().filter(|role| role.axis() == axis);
         let named = roles.clone().next().is_some();
-        !named || roles.any(|&role| kind.has(role))
+        let shown = axis != LawAxis::Acceleration || seen.acceleration > 0.0;
+        !named || shown && roles.any(|&role| kind.has(role))
     })
 }
 
@@ -85,7 +91,11 @@ impl Factor {
             let number = hyde_units::significant(*value, 3);
             (constant.name.as_str(), number)
         });
-        let variables = [("x", place), ("v", speed)];
+        let variables = [
+            ("x", place),
+            ("v", speed),
+            ("a", kind.acceleration().to_owned()),
+        ];
         let words = variables.into_iter().chain(numbers);
         words.fold(self.shape.words.clone(), |text, (name, word)| {
             text.replace(&format!("{{{name}}}"), &word)
@@ -161,6 +171,9 @@ impl Factor {
             Ok(match self.shape.input(leaf) {
                 Some(LawInput::Variable(LawAxis::Speed)) => Along::Rows(&course.speed),
                 Some(LawInput::Variable(LawAxis::Place)) => Along::Rows(&course.place),
+                Some(LawInput::Variable(LawAxis::Acceleration)) => {
+                    Along::Rows(&course.acceleration)
+                }
                 Some(LawInput::Variable(LawAxis::Time)) => Along::Rows(&course.time),
                 Some(LawInput::State(number)) => match filtered.get(number) {
                     Some(values) => Along::Rows(values),
@@ -195,11 +208,14 @@ impl Factor {
             }
             Some(LawInput::Round(LawAxis::Speed)) => scales.speed,
             Some(LawInput::Round(LawAxis::Place)) => scales.place,
+            Some(LawInput::Round(LawAxis::Acceleration)) => scales.acceleration,
             Some(LawInput::Round(LawAxis::Time)) => scales.time,
             Some(LawInput::Least(LawAxis::Speed)) => -seen.speed,
+            Some(LawInput::Least(LawAxis::Acceleration)) => -seen.acceleration,
             Some(LawInput::Least(LawAxis::Place)) => seen.place.0,
             Some(LawInput::Least(LawAxis::Time)) => seen.time.0,
             Some(LawInput::Greatest(LawAxis::Speed)) => seen.speed,
+            Some(LawInput::Greatest(LawAxis::Acceleration)) => seen.acceleration,
             Some(LawInput::Greatest(LawAxis::Place)) => seen.place.1,
             Some(LawInput::Greatest(LawAxis::Time)) => seen.time.1,
             Some(LawInput::Variable(_) | LawInput::State(_)) | None => f64::NAN,
@@ -238,9 +254,11 @@ impl Factor {
         let named = |number: &usize| match self.shape.inputs.get(*number)? {
             LawInput::Variable(LawAxis::Speed) => Some(kind.speed.text.clone()),
             LawInput::Variable(LawAxis::Place) => Some(kind.place.text.clone()),
+            LawInput::Variable(LawAxis::Acceleration) => Some(kind.acceleration.text.clone()),
             LawInput::Variable(LawAxis::Time) => Some("time".to_owned()),
             LawInput::Round(LawAxis::Speed) => Some(kind.speed.round.clone()),
             LawInput::Round(LawAxis::Place) => Some(kind.place.round.clone()),
+            LawInput::Round(LawAxis::Acceleration) => Some(kind.acceleration.round.clone()),
             LawInput::Round(LawAxis::Time) => Some(kind.round_time.clone()),
             LawInput::Constant(number) => names.get(*number).cloned(),
             LawInput::State(number) => Some(self.state(*number, names)),
@@ -290,9 +308,14 @@ impl Factor {
         }
     }
 
-    /// Which of the round numbers it is written with: speed, place, time.
-    pub(crate) fn scales(&self) -> [bool; 3] {
+    /// Which of the round numbers it is written with: speed, place, acceleration, time.
+    pub(crate) fn scales(&self) -> [bool; 4] {
         AXES.map(|axis| self.shape.reads(LawInput::Round(axis)))
+    }
+
+    /// Whether it is a function of a variable of its site.
+    pub(crate) fn reads(&self, axis: LawAxis) -> bool {
+        self.shape.reads(LawInput::Variable(axis))
     }
 }
 
@@ -301,6 +324,7 @@ fn unit(of: &LawUnit, kind: &Kind) -> NamedUnit {
     match of {
         LawUnit::Of(LawAxis::Speed) => kind.speed.unit.clone(),
         LawUnit::Of(LawAxis::Place) => kind.place.unit.clone(),
+        LawUnit::Of(LawAxis::Acceleration) => kind.acceleration.unit.clone(),
         LawUnit::Of(LawAxis::Time) => NamedUnit::usual(Dimension::TIME),
         LawUnit::Own(unit) => unit.clone(),
     }

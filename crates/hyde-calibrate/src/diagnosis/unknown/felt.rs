@@ -3,7 +3,7 @@
 use super::latent::Carrier;
 use super::law::Summand;
 use super::seen::{Scales, Seen};
-use super::site::{Site, probe};
+use super::site::{Site, Tells, probe};
 use crate::diagnosis::inquiry::Author;
 use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};
@@ -31,15 +31,17 @@ impl Felt {
         site: &Site,
         author: &Author<'_>,
     ) -> Option<Self> {
-        let built = author(&stage.numbers(), &[probe(site, PROBE)])?;
-        let path = built.paths.last()?;
-        let set = ground.set_in(&built.program, &stage.values());
-        let carriers: Option<Vec<Carrier>> = ground
-            .recordings
-            .iter()
-            .map(|recording| Carrier::new(&built.program, recording, ground.observer, &set, path))
-            .collect();
-        let carriers = carriers?;
+        let carriers = |tells: Tells| -> Option<Vec<Carrier>> {
+            let built = author(&stage.numbers(), &[probe(site, PROBE, tells)])?;
+            let path = built.paths.last()?;
+            let set = ground.set_in(&built.program, &stage.values());
+            let each = ground.recordings.iter();
+            each.map(|recording| {
+                Carrier::new(&built.program, recording, ground.observer, &set, path)
+            })
+            .collect()
+        };
+        let carriers = site.kind.probes().iter().copied().find_map(carriers)?;
         let seen = Seen::of(carriers.iter().map(|carrier| &carrier.course));
         let fine = seen.speed > 0.0 && seen.travel() > 0.0 && seen.speed.is_finite();
         fine.then(|| Self {

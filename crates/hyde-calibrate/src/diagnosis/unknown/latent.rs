@@ -9,7 +9,7 @@
 //! does what any change has in common with every course, which is the same rows backwards. Guards are taken to act when they
 //! do without the force.
 
-use super::site::PROBE;
+use super::site::{PROBE, PROBE_BY_ACCELERATION};
 use crate::diagnosis::projection::dot;
 use crate::linear::{SIDE_BY_SIDE, add_product, set_product, set_products};
 use crate::observer::{Direction, Forces, Known, Modes, Observer, Own, Track, Vectors, When};
@@ -24,6 +24,8 @@ pub(crate) struct Course {
     pub(crate) time: Vec<f64>,
     pub(crate) place: Vec<f64>,
     pub(crate) speed: Vec<f64>,
+    /// 0 where the probe does not tell it.
+    pub(crate) acceleration: Vec<f64>,
     /// Whether a force acts at all: a friction that holds has no grip to add to.
     pub(crate) acts: Vec<bool>,
 }
@@ -83,7 +85,10 @@ impl Carrier {
         path: &str,
     ) -> Option<Self> {
         let mut directions = Vec::new();
-        for name in PROBE {
+        let by_acceleration = format!("{path}.{PROBE_BY_ACCELERATION}");
+        let accelerated = program.parameter(&by_acceleration).is_some();
+        let more = accelerated.then_some(PROBE_BY_ACCELERATION);
+        for name in PROBE.into_iter().chain(more) {
             let (parameter, element) = program.parameter(&format!("{path}.{name}"))?;
             let mut with = set.to_vec();
             with.push((parameter.place + element, 1.0));
@@ -111,7 +116,7 @@ impl Carrier {
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
         let (mut passages, mut room) = (BTreeMap::new(), Vectors::default());
         let mut increment = vec![0.0; states];
-        let (mut place, mut speed) = (0.0, 0.0);
+        let mut last = Where::default();
         for (row, passed) in track.route.rows.iter().enumerate() {
             let [before, after] = passed.modes;
             if own.shown {
@@ -123,10 +128,11 @@ impl Carrier {
             let at = track.point(row, When::After, &p, &mut room);
             own.forces(at, &mut forces);
             found.course.time.push(at.t);
-            let at = place_and_speed(&forces).or_else(|| place_and_speed(&by_output));
-            (place, speed) = at.unwrap_or((place, speed));
-            found.course.place.push(place);
-            found.course.speed.push(speed);
+            let at = Where::of(&forces).or_else(|| Where::of(&by_output));
+            last = at.unwrap_or(last);
+            found.course.place.push(last.place);
+            found.course.speed.push(last.speed);
+            found.course.acceleration.push(last.acceleration);
             found.course.acts.push(at.is_some());
             let [corrected_by, stepped_by] = [&known.modes[corrected], &known.modes[stepped]];
             let unit = forces.column(0);
@@ -255,11 +261,25 @@ impl Carrier {
     }
 }
 
-/// Where a site is and how fast, from what its probe adds to some equations: by force, by place, by speed.
-fn place_and_speed(added: &DMatrix<f64>) -> Option<(f64, f64)> {
-    match strongest(added)?.as_slice() {
-        [place, speed, ..] => Some((*place, *speed)),
-        _ => None,
+/// Where a site is, and how it moves.
+#[derive(Clone, Copy, Default)]
+struct Where {
+    place: f64,
+    speed: f64,
+    acceleration: f64,
+}
+
+impl Where {
+    /// From what its probe adds to some equations: by force, by place, by speed, and by acceleration where it tells it.
+    fn of(added: &DMatrix<f64>) -> Option<Self> {
+        match strongest(added)?.as_slice() {
+            [place, speed, more @ ..] => Some(Self {
+                place: *place,
+                speed: *speed,
+                acceleration: more.first().copied().unwrap_or(0.0),
+            }),
+            _ => None,
+        }
     }
 }
 
@@ -288,6 +308,8 @@ pub struct LatentForce {
     pub place: Vec<f64>,
     /// How fast, SI.
     pub speed: Vec<f64>,
+    /// How fast that changes, SI; 0 where it is not known.
+    pub acceleration: Vec<f64>,
     /// The force or torque that the balance would need there, SI.
     pub force: Vec<f64>,
     /// Its standard deviation, SI.
@@ -352,6 +374,7 @@ pub(crate) fn smoothed(carrier: &Carrier, innovations: &[f64]) -> Option<LatentF
         time: of(&carrier.course.time),
         place: of(&carrier.course.place),
         speed: of(&carrier.course.speed),
+        acceleration: of(&carrier.course.acceleration),
         deviation: covariance.diagonal().iter().map(|v| v.sqrt()).collect(),
         force: force.iter().copied().collect(),
     })

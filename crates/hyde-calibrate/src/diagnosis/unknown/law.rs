@@ -5,6 +5,7 @@ use super::latent::Carrier;
 use super::seen::Seen;
 use super::site::{Site, Written};
 use crate::diagnosis::{Hypothesis, Knob};
+use hyde_ir::LawAxis;
 use hyde_units::{Dimension, NamedUnit, significant};
 use std::fmt::Write as _;
 
@@ -85,6 +86,18 @@ impl Law {
             .sum()
     }
 
+    /// Whether it is a function of the acceleration, beside others.
+    #[must_use]
+    pub fn is_of_acceleration(&self) -> bool {
+        self.reads(LawAxis::Acceleration)
+    }
+
+    /// Whether it is a function of a variable of its site, beside others.
+    fn reads(&self, axis: LawAxis) -> bool {
+        let mut factors = self.terms.iter().flat_map(|term| &term.factors);
+        factors.any(|factor| factor.reads(axis))
+    }
+
     /// The law with other values: sizes, then constants, in the order of its terms.
     pub(crate) fn with(&self, values: &[f64]) -> Self {
         let count: usize = self.terms.iter().map(|term| term.sizes.len()).sum();
@@ -114,7 +127,7 @@ impl Law {
         let (mut sizes, mut shapes) = (Vec::new(), Vec::new());
         let (mut declared, mut equations) = (String::new(), String::new());
         let mut sum: Vec<String> = Vec::new();
-        let mut used = [false; 3];
+        let mut used = [false; 4];
         let mut signature: Vec<String> = Vec::new();
         let mut taken = kind.taken.clone();
         let single = self.terms.len() == 1;
@@ -193,6 +206,11 @@ impl Law {
         let units = [
             (&kind.speed.round, scales.speed, &kind.speed.unit),
             (&kind.place.round, scales.place, &kind.place.unit),
+            (
+                &kind.acceleration.round,
+                scales.acceleration,
+                &kind.acceleration.unit,
+            ),
             (&kind.round_time, scales.time, &second),
         ];
         for ((own, value, unit), _) in units.iter().zip(used).filter(|(_, used)| *used) {
@@ -207,7 +225,7 @@ impl Law {
         if kind.is_grip() && sum.len() > 1 {
             law = format!("({law})");
         }
-        text.push_str(&kind.clauses(&law));
+        text.push_str(&kind.clauses(&law, &|axis| self.reads(axis)));
         if signature.is_empty() {
             signature.push("offset".to_owned());
         }

@@ -19,6 +19,8 @@ pub enum Variable {
     Speed,
     /// Place or angle.
     Place,
+    /// Acceleration.
+    Acceleration,
     /// The angle within a turn.
     Turn,
     /// Time.
@@ -37,10 +39,22 @@ impl Variable {
         match self {
             Self::Speed => speed,
             Self::Place => place,
+            Self::Acceleration => kind.acceleration().to_owned(),
             Self::Turn => "angle in a revolution".to_owned(),
             Self::Time => "time".to_owned(),
             Self::SpeedByPlace => format!("{speed} times {place}"),
             Self::SpeedByTime => format!("{speed} times time"),
+        }
+    }
+
+    /// Its SI unit, at a kind of site.
+    #[must_use]
+    pub fn unit(self, kind: &Kind) -> String {
+        match self {
+            Self::Speed => kind.speed_unit(),
+            Self::Place | Self::Turn | Self::SpeedByPlace => kind.place_unit(),
+            Self::Acceleration => kind.acceleration_unit(),
+            Self::Time | Self::SpeedByTime => "s".to_owned(),
         }
     }
 }
@@ -139,6 +153,9 @@ fn shifted(innovations: &[f64], lengths: &[usize], shift: usize) -> Vec<f64> {
 
 fn variables(felt: &Felt) -> Vec<Variable> {
     let mut all = vec![Variable::Speed, Variable::Place, Variable::Time];
+    if felt.seen.acceleration > 0.0 {
+        all.push(Variable::Acceleration);
+    }
     if felt.site.kind.turns() && felt.seen.travel() > std::f64::consts::TAU {
         all.push(Variable::Turn);
     }
@@ -168,6 +185,7 @@ fn columns(felt: &Felt, variable: Variable) -> (Vec<f64>, Vec<Vec<f64>>) {
             .map(|x| seen.speed * x * x.abs())
             .collect(),
         Variable::Place | Variable::SpeedByPlace => even(seen.place),
+        Variable::Acceleration => even((-seen.acceleration, seen.acceleration)),
         Variable::Time | Variable::SpeedByTime => even(seen.time),
         Variable::Turn => even((0.0, std::f64::consts::TAU)),
     };
@@ -176,6 +194,7 @@ fn columns(felt: &Felt, variable: Variable) -> (Vec<f64>, Vec<Vec<f64>>) {
         Variable::Speed if grip => course.speed[row].abs(),
         Variable::Speed => course.speed[row],
         Variable::Place | Variable::SpeedByPlace => course.place[row],
+        Variable::Acceleration => course.acceleration[row],
         Variable::Time | Variable::SpeedByTime => course.time[row],
         Variable::Turn => course.place[row].rem_euclid(std::f64::consts::TAU),
     };

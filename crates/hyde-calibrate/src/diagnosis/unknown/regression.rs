@@ -220,7 +220,7 @@ fn dictionary(shapes: &[Arc<LawShape>], felt: &Felt, most_cost: usize) -> Vec<Su
     let seen = &felt.seen;
     let tried = shapes
         .iter()
-        .filter(|shape| is_tried(shape, &felt.site.kind));
+        .filter(|shape| is_tried(shape, &felt.site.kind, seen));
     let (of_speed, others): (Vec<_>, Vec<_>) = tried.partition(|shape| is_of_speed(shape));
     let few = |shape: &LawShape| shape.few.unwrap_or(usize::MAX);
     let mut found = vec![Summand::new(&[])];
@@ -250,7 +250,7 @@ fn dictionary(shapes: &[Arc<LawShape>], felt: &Felt, most_cost: usize) -> Vec<Su
 pub(crate) fn best_wave(shapes: &[Arc<LawShape>], felt: &Felt, projection: &Projection) -> f64 {
     let kind = &felt.site.kind;
     let waves = shapes.iter().filter(|shape| {
-        let tried = is_tried(shape, kind) && !is_of_speed(shape);
+        let tried = is_tried(shape, kind, &felt.seen) && !is_of_speed(shape);
         tried && shape.outputs.len() > 1
     });
     let of = |shape| Factor::tried(shape, &felt.seen).take(shape.few.unwrap_or(usize::MAX));

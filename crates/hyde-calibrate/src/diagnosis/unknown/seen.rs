@@ -9,6 +9,8 @@ pub struct Scales {
     pub speed: f64,
     /// A way of the record, SI.
     pub place: f64,
+    /// An acceleration of the record, SI.
+    pub acceleration: f64,
     /// A time of the record, s.
     pub time: f64,
 }
@@ -18,6 +20,8 @@ pub struct Scales {
 pub struct Seen {
     /// The highest speed, either way.
     pub speed: f64,
+    /// The greatest acceleration, either way; 0 where the site has none.
+    pub acceleration: f64,
     /// From where to where it was.
     pub place: (f64, f64),
     /// From when to when.
@@ -33,9 +37,13 @@ impl Seen {
                 (low.min(x), high.max(x))
             })
         };
-        let speed = range(&|course| &course.speed);
+        let most = |of: &dyn Fn(&'a Course) -> &'a [f64]| {
+            let (low, high) = range(of);
+            low.abs().max(high.abs())
+        };
         Self {
-            speed: speed.0.abs().max(speed.1.abs()),
+            speed: most(&|course| &course.speed),
+            acceleration: most(&|course| &course.acceleration),
             place: range(&|course| &course.place),
             time: range(&|course| &course.time),
         }
@@ -52,6 +60,7 @@ impl Seen {
         Scales {
             speed: round(self.speed),
             place: round(most),
+            acceleration: round(self.acceleration),
             time: round(self.time.1.max(1e-3)),
         }
     }

@@ -1,7 +1,7 @@
 //! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there. All of it follows
 //! from what the model declares at the site: `site Force grip = F over (place = a.s, slip = v);`.
 
-use hyde_ir::LawRole;
+use hyde_ir::{LawAxis, LawRole};
 use hyde_syntax::{LawForm, LawTarget};
 use hyde_units::{Dimension, NamedUnit};
 
@@ -42,6 +42,7 @@ pub struct Kind {
     pub(crate) value: NamedUnit,
     pub(crate) place: Named,
     pub(crate) speed: Named,
+    pub(crate) acceleration: Named,
     /// What a round time is called.
     pub(crate) round_time: String,
     /// The names that a law must not give to anything of its own.
@@ -97,10 +98,14 @@ impl Kind {
             "rad/s" => "w",
             _ => "rate",
         };
+        let size = taken.stem(sizes);
+        let place = Named::new(place, "x", inside, fine, &mut taken);
+        let speed = Named::new(speed, rate, inside, false, &mut taken);
         Self {
-            size: taken.stem(sizes),
-            place: Named::new(place, "x", inside, fine, &mut taken),
-            speed: Named::new(speed, rate, inside, false, &mut taken),
+            size,
+            place,
+            acceleration: Named::derivative_of(&speed, &mut taken),
+            speed,
             round_time: taken.free("t1"),
             taken,
             form,
@@ -128,7 +133,17 @@ impl Kind {
             LawRole::Angle => lies && self.turns(),
             LawRole::Stretch => self.form == LawForm::Elastic,
             LawRole::Demand => self.form == LawForm::Demand,
+            LawRole::Acceleration => lies,
             LawRole::Motion | LawRole::Time => true,
+        }
+    }
+
+    /// What the derivative of its speed is.
+    #[must_use]
+    pub fn acceleration(&self) -> &'static str {
+        match self.form {
+            LawForm::Motion | LawForm::Friction => "acceleration",
+            LawForm::Elastic | LawForm::Demand => "second derivative",
         }
     }
 
@@ -219,6 +234,12 @@ impl Kind {
         self.speed.unit.si().text().to_owned()
     }
 
+    /// The SI unit of its acceleration.
+    #[must_use]
+    pub fn acceleration_unit(&self) -> String {
+        self.acceleration.unit.si().text().to_owned()
+    }
+
     /// The mark that a law of the place leaves.
     pub(crate) fn mark_of_place(&self) -> &'static str {
         match self.form {
@@ -228,8 +249,17 @@ impl Kind {
         }
     }
 
-    /// The lines that put a law on the site.
-    pub(crate) fn clauses(&self, law: &str) -> String {
+    /// What probes of the site tell, the one that tells most first: a place that no state has cannot always be differentiated
+    /// twice.
+    pub(crate) fn probes(&self) -> &'static [Tells] {
+        match self.has(LawRole::Acceleration) {
+            true => &[Tells::Acceleration, Tells::Speed],
+            false => &[Tells::Speed],
+        }
+    }
+
+    /// The lines that put a law on the site, and declare those of its variables that it is a function of.
+    pub(crate) fn clauses(&self, law: &str, reads: &dyn Fn(LawAxis) -> bool) -> String {
         let mut text = match &self.target {
             LawTarget::Flow(flow) => format!("  add a.{flow} = -({law});\n"),
             LawTarget::Value { name, hold, .. } => {
@@ -239,7 +269,13 @@ impl Kind {
                     .collect()
             }
         };
-        for variable in [&self.place, &self.speed] {
+        let accelerates = reads(LawAxis::Acceleration);
+        let variables = [
+            (reads(LawAxis::Place), &self.place),
+            (reads(LawAxis::Speed) || accelerates, &self.speed),
+            (accelerates, &self.acceleration),
+        ];
+        for (_, variable) in variables.iter().filter(|(read, _)| *read) {
             if let Some(definition) = &variable.definition {
                 text.push_str(&format!("  Real {} = {definition};\n", variable.text));
             }
@@ -276,6 +312,17 @@ impl Named {
             unit: usual_on_drives(variable.unit, fine),
             text,
             definition,
+        }
+    }
+
+    /// The derivative of a speed, which a law always has to declare.
+    fn derivative_of(speed: &Self, taken: &mut Taken) -> Self {
+        let dimension = speed.unit.unit().dimension.divide(Dimension::TIME);
+        Self {
+            round: taken.free("acc1"),
+            unit: NamedUnit::usual(dimension),
+            text: taken.free("acc"),
+            definition: Some(format!("der({})", speed.text)),
         }
     }
 }
@@ -330,21 +377,36 @@ impl Taken {
     }
 }
 
+/// Up to which derivative of the place a probe tells where its site is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tells {
+    Speed,
+    Acceleration,
+}
+
 /// An effect by which a force at a site is felt, or a sensor's error: its sizes are the force, and forces a unit of
-/// place and of speed.
-pub(crate) fn probe(site: &Site, name: &str) -> Written {
+/// place, of speed, and of acceleration where it tells it.
+pub(crate) fn probe(site: &Site, name: &str, tells: Tells) -> Written {
     let kind = &site.kind;
     let (unit, of_place, of_speed) = (kind.force_unit(), kind.place_unit(), kind.speed_unit());
     let (place, speed) = (&kind.place.text, &kind.speed.text);
     let [force, by_place, by_speed] = PROBE;
-    let law = format!(
-        "({force} + {by_place}*{place}/(1 [{of_place}]) + {by_speed}*{speed}/(1 [{of_speed}]))"
-    );
     let size = format!("= 0 [{unit}] in -1 .. 1 [{unit}]");
+    let mut sizes = format!("{force} {size}, {by_place} {size}, {by_speed} {size}");
+    let mut law = format!(
+        "{force} + {by_place}*{place}/(1 [{of_place}]) + {by_speed}*{speed}/(1 [{of_speed}])"
+    );
+    if tells == Tells::Acceleration {
+        let (own, of) = (&kind.acceleration.text, kind.acceleration.unit.text());
+        sizes.push_str(&format!(", {PROBE_BY_ACCELERATION} {size}"));
+        law.push_str(&format!(" + {PROBE_BY_ACCELERATION}*{own}/(1 [{of}])"));
+    }
     let text = format!(
-        "effect {name} on {}\n  size Real {force} {size}, {by_place} {size}, {by_speed} {size};\n{}end {name};\n",
+        "effect {name} on {}\n  size Real {sizes};\n{}end {name};\n",
         kind.host,
-        kind.clauses(&law)
+        kind.clauses(&format!("({law})"), &|axis| {
+            axis != LawAxis::Acceleration || tells == Tells::Acceleration
+        })
     );
     Written {
         name: name.to_owned(),
@@ -355,3 +417,4 @@ pub(crate) fn probe(site: &Site, name: &str) -> Written {
 
 /// The probe's sizes: force, by place, by speed. No variable of a site is likely to be called so.
 pub(crate) const PROBE: [&str; 3] = ["probe_force", "probe_by_place", "probe_by_speed"];
+pub(crate) const PROBE_BY_ACCELERATION: &str = "probe_by_acceleration";

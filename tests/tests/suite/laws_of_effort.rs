@@ -1,0 +1,92 @@
+//! Laws of what drives and of what is lost: of an acceleration and its direction, of losses behind a low pass.
+
+use crate::unknown_effects::{AMPLIFIER, diagnosed, diagnosed_on, law_alone};
+
+/// A sign that no speed and no place has: it grips while it is accelerated, and lets go while it is braked.
+#[test]
+fn a_friction_that_goes_with_the_acceleration_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Guide
+           wrap grip by grip + 25 [N]*tanh(der(v)/(0.3 [m/s2]));
+           wrap hold by hold + 25 [N]*tanh(der(v)/(0.3 [m/s2]));
+         end Odd;",
+        " with Odd on guide",
+    );
+    let law = law_alone(&found);
+    assert!(law.contains("wrap grip by grip + F*tanh(acc/a0);"), "{law}");
+    assert!(law.contains("Real acc = der(v);"), "{law}");
+    let effect = &found["effects"][0];
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / 25.0 - 1.0).abs() < 0.05, "{size}");
+    let a0 = effect["shape"]["a0"]["value"].as_f64().unwrap();
+    assert!((a0 / 0.3 - 1.0).abs() < 0.2, "{a0}");
+}
+
+/// A table that takes something along in one direction.
+#[test]
+fn a_mass_of_one_direction_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Rail
+           add a.f = 12 [kg]*tanh(v/(2 [mm/s]))*der(v);
+           Velocity v = der(a.s);
+         end Odd;",
+        " with Odd on saddle.a",
+    );
+    let law = law_alone(&found);
+    assert!(law.contains("acc/acc1"), "{law}");
+    assert!(
+        law.contains("Real acc = der(v);") || law.contains("Real acc = der("),
+        "{law}"
+    );
+}
+
+/// The losses of viscous friction, behind a low pass.
+#[test]
+fn a_friction_that_goes_with_viscous_losses_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Guide
+           Real warm(start = 0, fixed = true);
+           wrap grip by grip + 25 [N]*warm;
+           wrap hold by hold + 25 [N]*warm;
+         equation
+           der(warm) = ((v/(100 [mm/s]))^2 - warm)/(0.15 [s]);
+         end Odd;",
+        " with Odd on guide",
+    );
+    let law = law_alone(&found);
+    assert!(law.contains("wrap grip by grip + F*warmth_tau;"), "{law}");
+    let filter = "tau*der(warmth_tau) = (v/v1)^2 - warmth_tau;";
+    assert!(law.contains(filter), "{law}");
+    let effect = &found["effects"][0];
+    let tau = effect["shape"]["tau"]["value"].as_f64().unwrap();
+    assert!((tau / 0.15 - 1.0).abs() < 0.1, "{tau}");
+    // 25 N at 100 mm/s are 100 N at the 200 mm/s that sizes are given at.
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / 100.0 - 1.0).abs() < 0.1, "{size}");
+}
+
+/// A winding that warms by its own losses, and gives less for its current then.
+#[test]
+fn a_drive_that_weakens_as_its_current_warms_it_is_found_and_written() {
+    let found = diagnosed_on(
+        &AMPLIFIER,
+        "effect Odd on Electrical.CurrentAmplifier
+           Real heat(start = 0, fixed = true);
+           wrap demand by demand*(1 - 0.1*heat);
+         equation
+           der(heat) = ((i_ref/(50 [A]))^2 - heat)/(0.2 [s]);
+         end Odd;",
+        " with Odd on amplifier",
+        "few",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "amplifier");
+    let text = "wrap demand by demand + I*i_ref/x1*heat_tau;";
+    assert!(law.contains(text), "{law}");
+    let filter = "tau*der(heat_tau) = (i_ref/x1)^2 - heat_tau;";
+    assert!(law.contains(filter), "{law}");
+    let tau = found["effects"][0]["shape"]["tau"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!((tau / 0.2 - 1.0).abs() < 0.1, "{tau}");
+}
