@@ -15,12 +15,24 @@ const FORMS: [(LawForm, [&str; 2]); 4] = [
 ];
 /// The role of the site that holds a friction at rest: it takes the same law.
 const HOLD: &str = "hold";
+/// The role of a variable of any dimension with which a law may go as well: a current, a force.
+const SIGNAL: &str = "signal";
+/// The roles that may stand beside a pair.
+const BESIDE: [&str; 2] = [HOLD, SIGNAL];
 
 /// What is wrong; nothing where that is reported elsewhere.
 pub(crate) type Refusal = Option<Box<Diagnostic>>;
 
-/// The form, its two variables, and the site that holds at rest.
-pub(crate) type Roles<'a> = (LawForm, [&'a Expr; 2], Option<&'a Expr>);
+/// What stands behind `over`.
+pub(crate) struct Roles<'a> {
+    pub(crate) form: LawForm,
+    /// The two variables of the form.
+    pub(crate) pair: [&'a Expr; 2],
+    /// The site that holds at rest.
+    pub(crate) hold: Option<&'a Expr>,
+    /// What the site has beside them.
+    pub(crate) signal: Option<&'a Expr>,
+}
 
 /// Reads the roles of a site.
 pub(crate) fn roles(declarator: &Declarator) -> Result<Roles<'_>, Refusal> {
@@ -31,8 +43,9 @@ pub(crate) fn roles(declarator: &Declarator) -> Result<Roles<'_>, Refusal> {
             return Err(wrong(refused::no_role(argument.value.span, &every_form())));
         };
         let word = role.text.as_str();
-        if word != HOLD && !all.clone().any(|known| known == word) {
-            let near = nearest(word, all.clone().chain([HOLD]));
+        let mut known = all.clone().chain(BESIDE);
+        if !known.any(|known| known == word) {
+            let near = nearest(word, all.clone().chain(BESIDE));
             return Err(wrong(refused::unknown_role(role, near, &every_form())));
         }
         if given.iter().any(|(known, _)| *known == word) {
@@ -44,13 +57,14 @@ pub(crate) fn roles(declarator: &Declarator) -> Result<Roles<'_>, Refusal> {
         let found = given.iter().find(|(known, _)| *known == role);
         found.map(|(_, argument)| &argument.value)
     };
-    let hold = of(HOLD);
-    let count = given.len() - usize::from(hold.is_some());
+    let beside = BESIDE.map(of);
+    let count = given.len() - beside.iter().flatten().count();
+    let [hold, signal] = beside;
     let form = FORMS.iter().find_map(|(form, [first, second])| {
         let both = [of(first)?, of(second)?];
         (count == 2).then_some((*form, both))
     });
-    let Some((form, both)) = form else {
+    let Some((form, pair)) = form else {
         return Err(wrong(refused::no_pair_of_roles(
             declarator.name.span,
             &every_form(),
@@ -59,13 +73,21 @@ pub(crate) fn roles(declarator: &Declarator) -> Result<Roles<'_>, Refusal> {
     if let Some(hold) = hold.filter(|_| form != LawForm::Friction) {
         return Err(wrong(refused::hold_without_slip(hold.span)));
     }
-    Ok((form, both, hold))
+    Ok(Roles {
+        form,
+        pair,
+        hold,
+        signal,
+    })
 }
 
 /// The pairs of roles that there are.
 fn every_form() -> String {
     let pairs = FORMS.map(|(_, [first, second])| format!("`{first}` with `{second}`"));
-    format!("the roles are {}", pairs.join(", "))
+    format!(
+        "the roles are {}; `{HOLD}` and `{SIGNAL}` may follow",
+        pairs.join(", ")
+    )
 }
 
 /// A diagnostic as a refusal.

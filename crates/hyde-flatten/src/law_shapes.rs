@@ -29,8 +29,8 @@ use draft::{Draft, Mark, READ_IN, every_role};
 use filter::filters;
 use hyde_diag::{FileId, MadeBy, Span};
 use hyde_ir::{
-    Expr as Ir, ExprArena, ExprId, FlatModel, Id as _, Index, LawConstant, LawInput, LawShape,
-    VarId, VariableKind,
+    Expr as Ir, ExprArena, ExprId, FlatModel, Id as _, Index, LawAxis, LawConstant, LawInput,
+    LawShape, VarId, VariableKind,
 };
 use hyde_syntax::ast::{
     Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation, Expr, File, Item,
@@ -133,7 +133,10 @@ fn declared_in_shape<'a>(
             | LawInput::Least(axis)
             | LawInput::Greatest(axis) = input
             {
-                draft.axes.push((axis, dimension));
+                // A signal may have any unit: no constant has that of it.
+                if axis != LawAxis::Signal {
+                    draft.axes.push((axis, dimension));
+                }
             }
             input_of_shape(model, draft, name, input, (dim, span));
         }

@@ -5,6 +5,7 @@
 //! site Force grip = F over (place = a.s, slip = v, hold = hold);     a friction, with what holds it at rest
 //! site Force F = c*e + d*v over (stretch = e, rate = v);             what is elastic
 //! site Current i = i_ref over (demand = i_ref, rate = der(i));       what an amplifier is asked for
+//! site Voltage V = K*w over (place = phi, speed = w, signal = i);    what goes with a current beside it as well
 //! ```
 //! Whoever asks what a model lacks puts laws there: `add a.f = -(law)` on the connector, `wrap grip by grip + law` on the
 //! component. What is declared wrongly is reported for every class that the model has.
@@ -17,7 +18,7 @@ use crate::candidates::sites;
 use crate::input::Input;
 use crate::instance::{InstanceId, Member};
 use crate::instantiate::InstanceTree;
-use crate::law_roles::{Refusal, roles, wrong};
+use crate::law_roles::{Refusal, Roles, roles, wrong};
 use crate::model::Model;
 use crate::names::{FileIndex, Names};
 use crate::refusals::laws as refused;
@@ -114,12 +115,19 @@ fn law_site<'a>(
     if !is_one_number(&model.flat, *var) {
         return Err(wrong(refused::several_numbers(&declarator.name)));
     }
-    let (form, [first, second], hold) = roles(declarator)?;
+    let Roles {
+        form,
+        pair: [first, second],
+        hold,
+        signal,
+    } = roles(declarator)?;
     let over = [
         law_variable(model, id, first)?,
         law_variable(model, id, second)?,
     ];
     rate_agrees(&over, second)?;
+    let signal = signal.map(|value| law_variable(model, id, value));
+    let signal = signal.transpose()?;
     let dimension = model.flat.variables[*var].quantity.dimension;
     let hold = match hold {
         Some(hold) => Some(held_site(
@@ -149,6 +157,7 @@ fn law_site<'a>(
         dimension,
         form,
         over,
+        signal,
     })
 }
 

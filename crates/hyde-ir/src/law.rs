@@ -37,6 +37,8 @@ pub enum LawRole {
     Stretch,
     /// What an amplifier is asked for.
     Demand,
+    /// What a site has beside its two variables: a current, a force.
+    Signal,
     /// The time.
     Time,
 }
@@ -50,6 +52,8 @@ pub enum LawAxis {
     Place,
     /// The derivative of a speed: `a`.
     Acceleration,
+    /// Another variable that the site declares: `u`.
+    Signal,
     /// The time: `t`.
     Time,
 }
@@ -57,13 +61,13 @@ pub enum LawAxis {
 /// What an input of a shape is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LawInput {
-    /// The variable itself: `v`, `x`, `a`, `t`.
+    /// The variable itself: `v`, `x`, `a`, `u`, `t`.
     Variable(LawAxis),
-    /// A round value of it: `v1`, `x1`, `a1`, `t1`.
+    /// A round value of it: `v1`, `x1`, `a1`, `u1`, `t1`.
     Round(LawAxis),
     /// The least value that records show: `x_min`, `t_min`.
     Least(LawAxis),
-    /// The greatest: `x_max`, `t_max`; of a speed and an acceleration the greatest magnitude, `v_max`, `a_max`.
+    /// The greatest: `x_max`, `t_max`; of the others the greatest magnitude, `v_max`, `a_max`, `u_max`.
     Greatest(LawAxis),
     /// The constant of that number.
     Constant(usize),
@@ -146,7 +150,7 @@ pub enum LawPiece {
 pub struct LawShape {
     /// The function, with its package.
     pub name: String,
-    /// What it is, in words: `{v}`, `{x}` and `{a}` are the words of the site, `{vs}` is the value of a constant.
+    /// What it is, in words: `{v}`, `{x}`, `{a}` and `{u}` are the words of the site, `{vs}` is the value of a constant.
     pub words: String,
     /// Where it is tried: at sites with one of these roles.
     pub roles: Vec<LawRole>,
@@ -170,12 +174,13 @@ pub struct LawShape {
 
 impl LawRole {
     /// Each role with its word.
-    pub const ALL: [(Self, &'static str); 11] = [
+    pub const ALL: [(Self, &'static str); 12] = [
         (Self::Speed, "speed"),
         (Self::Slip, "slip"),
         (Self::Rate, "rate"),
         (Self::Motion, "motion"),
         (Self::Acceleration, "acceleration"),
+        (Self::Signal, "signal"),
         (Self::Place, "place"),
         (Self::Distance, "distance"),
         (Self::Angle, "angle"),
@@ -193,6 +198,7 @@ impl LawRole {
                 LawAxis::Place
             }
             Self::Acceleration => LawAxis::Acceleration,
+            Self::Signal => LawAxis::Signal,
             Self::Time => LawAxis::Time,
         }
     }
@@ -206,15 +212,18 @@ impl LawInput {
             "v" => Self::Variable(LawAxis::Speed),
             "x" => Self::Variable(LawAxis::Place),
             "a" => Self::Variable(LawAxis::Acceleration),
+            "u" => Self::Variable(LawAxis::Signal),
             "t" => Self::Variable(LawAxis::Time),
             "v1" => Self::Round(LawAxis::Speed),
             "x1" => Self::Round(LawAxis::Place),
             "a1" => Self::Round(LawAxis::Acceleration),
+            "u1" => Self::Round(LawAxis::Signal),
             "t1" => Self::Round(LawAxis::Time),
             "x_min" => Self::Least(LawAxis::Place),
             "t_min" => Self::Least(LawAxis::Time),
             "v_max" => Self::Greatest(LawAxis::Speed),
             "a_max" => Self::Greatest(LawAxis::Acceleration),
+            "u_max" => Self::Greatest(LawAxis::Signal),
             "x_max" => Self::Greatest(LawAxis::Place),
             "t_max" => Self::Greatest(LawAxis::Time),
             _ => return None,

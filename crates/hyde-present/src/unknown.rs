@@ -17,12 +17,11 @@ pub fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             let seen = &own.law.seen;
             out.push('\n');
             let [place, speed] = own.law.site.kind.variables();
-            let acceleration = match own.law.is_of_acceleration() {
-                true => format!("acceleration to {}, ", significant(seen.acceleration, 3)),
-                false => String::new(),
-            };
+            let more = own.law.of_more().into_iter();
+            let more = more.map(|(name, most)| format!("{name} to {}, ", significant(most, 3)));
+            let more: String = more.collect();
             let range = format!(
-                "{}: {speed} to {}, {acceleration}{place} {} to {}, time {} to {} (SI)",
+                "{}: {speed} to {}, {more}{place} {} to {}, time {} to {} (SI)",
                 own.law.site.path,
                 significant(seen.speed, 3),
                 significant(seen.place.0, 3),
@@ -118,6 +117,7 @@ pub fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
                 "place": force.place,
                 "speed": force.speed,
                 "acceleration": force.acceleration,
+                "signal": force.signal,
                 "force": force.force,
                 "deviation": force.deviation,
             })
@@ -165,6 +165,7 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
         "seen": {
             "speed": seen.speed,
             "acceleration": seen.acceleration,
+            "signal": seen.signal,
             "place": [seen.place.0, seen.place.1],
             "time": [seen.time.0, seen.time.1],
         },

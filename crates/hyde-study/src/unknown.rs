@@ -7,21 +7,22 @@ use hyde_units::NamedUnit;
 
 /// A site of a model where a law may act, as a diagnosis takes it.
 pub fn site(declared: hyde_compiler::LawSite) -> Site {
-    let over = declared.over.map(|own| LawVariable {
+    let variable = |own: hyde_compiler::LawVariable| LawVariable {
         unit: match own.derivative {
             true => NamedUnit::usual(own.dimension()),
             false => own.quantity.unit.clone(),
         },
         name: own.name,
         derivative: own.derivative,
-    });
+    };
     Site {
         kind: Kind::new(
             declared.host,
             declared.form,
             declared.target,
             declared.dimension,
-            over,
+            declared.over.map(variable),
+            declared.signal.map(variable),
         ),
         path: declared.path,
         aliases: declared.aliases,

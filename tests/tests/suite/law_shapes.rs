@@ -46,6 +46,7 @@ fn axis_of(axis: LawAxis) -> &'static str {
         LawAxis::Speed => "v",
         LawAxis::Place => "x",
         LawAxis::Acceleration => "a",
+        LawAxis::Signal => "u",
         LawAxis::Time => "t",
     }
 }
@@ -70,7 +71,8 @@ fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
         LawAxis::Speed => all[0],
         LawAxis::Place => all[1],
         LawAxis::Time => all[2],
-        LawAxis::Acceleration => all[3],
+        // A signal is in the place of an acceleration: no shape has both.
+        LawAxis::Acceleration | LawAxis::Signal => all[3],
     };
     let leaf = |leaf| match shape.input(leaf) {
         Some(LawInput::Variable(axis)) => Ok(values(axis, [at.v, at.x, at.t, at.a])),
@@ -87,7 +89,7 @@ fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
 
 /// Of each shape its text and its closed form, of v, x, t, two constants and a.
 type Form = fn(f64, f64, f64, f64, f64, f64) -> f64;
-const FORMS: [(&str, &str, Form); 36] = [
+const FORMS: [(&str, &str, Form); 40] = [
     ("speed", "v/v1", |v, _, _, _, _, _| v / 0.2),
     ("magnitude", "noEvent(abs(v))/v1", |v, _, _, _, _, _| {
         v.abs() / 0.2
@@ -177,6 +179,14 @@ const FORMS: [(&str, &str, Form); 36] = [
         |_, _, _, _, _, a| a.abs() / 5.0,
     ),
     ("pushing", "tanh(a/a0)", |_, _, _, a0, _, a| (a / a0).tanh()),
+    ("signal", "u/u1", |_, _, _, _, _, u| u / 5.0),
+    (
+        "magnitude_of_signal",
+        "noEvent(abs(u))/u1",
+        |_, _, _, _, _, u| u.abs() / 5.0,
+    ),
+    ("following", "followed", |_, _, _, _, _, _| 0.7),
+    ("losing", "lost", |_, _, _, _, _, _| 0.7),
     ("warmed", "warmth", |_, _, _, _, _, _| 0.7),
     ("heated", "x/x1*heat", |_, x, _, _, _, _| x / 0.05 * 0.7),
     ("elapsed", "t/t1", |_, _, t, _, _, _| t / 2.0),
@@ -238,6 +248,8 @@ fn filters_are_read_with_their_time_constant_and_their_input() {
         filters,
         [
             "tau*der(late) = v - late",
+            "tau*der(followed) = u/u1 - followed",
+            "tau*der(lost) = u/u1*v/v1 - lost",
             "tau*der(worked) = noEvent(abs(v)) - worked",
             "tau*der(warmth) = (v/v1)^2 - warmth",
             "tau*der(heat) = (x/x1)^2 - heat"

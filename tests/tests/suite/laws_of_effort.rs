@@ -65,6 +65,48 @@ fn a_friction_that_goes_with_viscous_losses_is_found_and_written() {
     assert!((size / 100.0 - 1.0).abs() < 0.1, "{size}");
 }
 
+/// Friction that warms by its own losses: the force that the guide has beside place and speed, times the speed.
+#[test]
+fn a_friction_that_goes_with_its_own_losses_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Guide
+           Real warm(start = 0, fixed = true);
+           wrap grip by grip - 30 [N]*warm;
+           wrap hold by hold - 30 [N]*warm;
+         equation
+           der(warm) = (a.f*v/(20 [W]) - warm)/(0.2 [s]);
+         end Odd;",
+        " with Odd on guide",
+    );
+    let law = law_alone(&found);
+    assert!(law.contains("wrap grip by grip + F*lost_tau;"), "{law}");
+    let filter = "tau*der(lost_tau) = a.f/u1*v/v1 - lost_tau;";
+    assert!(law.contains(filter), "{law}");
+    let tau = found["effects"][0]["shape"]["tau"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!((tau / 0.2 - 1.0).abs() < 0.1, "{tau}");
+}
+
+/// A tacho whose gain goes with the current of the motor beside it.
+#[test]
+fn a_tacho_whose_gain_goes_with_a_current_is_found_and_written() {
+    let tacho = "  Tachogenerator tacho(K_ta = 0.05 [V.s/rad]";
+    let beside = "  Tachogenerator tacho(i = i, K_ta = 0.05 [V.s/rad]";
+    let changes: Vec<(&str, &str)> = AMPLIFIER.into_iter().chain([(tacho, beside)]).collect();
+    let found = diagnosed_on(
+        &changes,
+        "effect Odd on Tachogenerator
+           wrap V6 by V6 + K_ta*w*0.002*i/(1 [A]);
+         end Odd;",
+        " with Odd on tacho",
+        "few",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "tacho");
+    assert!(law.contains("wrap V6 by V6 + U*w/w1*i/u1;"), "{law}");
+}
+
 /// A winding that warms by its own losses, and gives less for its current then.
 #[test]
 fn a_drive_that_weakens_as_its_current_warms_it_is_found_and_written() {

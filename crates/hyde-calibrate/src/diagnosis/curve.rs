@@ -16,13 +16,11 @@ use super::inquiry::Inquiry;
 use super::projection::dot;
 use super::stage::{Ground, flat};
 use super::thresholds::Thresholds;
-use super::unknown::{
-    CURVE_PROBE, Felt, Kind, PROBE_BY_ACCELERATION, PROBE_SIZES, Site, Tells, Variable, probe,
-    strongest,
-};
+use super::unknown::{Felt, Kind, Point, Site, Variable, probe, probes, sizes_of, strongest};
 use crate::fit::inflation;
 use crate::observer::{Direction, Forces, Innovations, Own, Track, Vectors, When};
 use crate::records::Recording;
+use hyde_ir::LawAxis;
 use hyde_program::Program;
 use hyde_signal::statistics::distributions::TWO_SIDED;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -189,8 +187,8 @@ impl Diagnosis {
         let stage = self.stage();
         let (_, path) = stage.effects.get(number)?;
         let sizes = Hypothesis::names(&hypothesis.sizes, path);
-        let along = |tells: Tells| -> Option<Vec<Along>> {
-            let probe = probe(site, CURVE_PROBE, tells);
+        let along = |more: &Vec<LawAxis>| -> Option<Vec<Along>> {
+            let probe = probe(site, more);
             let built = self.built(inquiry, &stage.numbers(), &[probe])?;
             let probe = built.paths.last()?;
             let set = ground.set_in(&built.program, &stage.values());
@@ -199,17 +197,14 @@ impl Diagnosis {
             each.map(|recording| Along::of(program, recording, ground, &set, (probe, &sizes)))
                 .collect()
         };
-        site.kind.probes().iter().copied().find_map(along)
+        probes(&site.kind).iter().find_map(along)
     }
 }
 
 /// A record: where its site is, row by row, and the force of the effect there.
 struct Along {
     time: Vec<f64>,
-    place: Vec<f64>,
-    speed: Vec<f64>,
-    /// 0 where the probe does not tell it.
-    acceleration: Vec<f64>,
+    at: Vec<Point>,
     /// NaN in a row where no force acts.
     force: Vec<f64>,
     innovations: Innovations,
@@ -235,12 +230,11 @@ impl Along {
             })
         };
         let mut directions = Vec::new();
-        for name in PROBE_SIZES {
-            directions.push(with(&mut std::iter::once(format!("{probe}.{name}")), 1.0)?);
+        let of_probe = sizes_of(program, probe);
+        for name in &of_probe {
+            directions.push(with(&mut std::iter::once(name.clone()), 1.0)?);
         }
         directions.push(with(&mut sizes.iter().cloned(), 0.0)?);
-        let by_acceleration = format!("{probe}.{PROBE_BY_ACCELERATION}");
-        directions.extend(with(&mut std::iter::once(by_acceleration), 1.0));
         let track = Track::new(program, recording, ground.observer, set).ok()?;
         let p = recording.parameters(program, set);
         let mut own = Own::new(program, &p, &directions);
@@ -248,14 +242,12 @@ impl Along {
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
         let mut found = Self {
             time: Vec::new(),
-            place: Vec::new(),
-            speed: Vec::new(),
-            acceleration: Vec::new(),
+            at: Vec::new(),
             force: Vec::new(),
             innovations: track.route.innovations.clone(),
         };
         let mut room = Vectors::default();
-        let mut last = [0.0; 3];
+        let mut last = Point::default();
         for row in 0..track.route.rows.len() {
             if own.shown {
                 let at = track.point(row, When::Before, &p, &mut room);
@@ -266,15 +258,13 @@ impl Along {
             found.time.push(at.t);
             let shown = strongest(&forces).or_else(|| strongest(&by_output));
             let force = match shown.as_deref() {
-                Some([place, speed, without, more @ ..]) => {
-                    last = [*place, *speed, more.first().copied().unwrap_or(0.0)];
+                Some([told @ .., without]) => {
+                    last = Point::told(&of_probe, told);
                     -without
                 }
                 _ => f64::NAN,
             };
-            found.place.push(last[0]);
-            found.speed.push(last[1]);
-            found.acceleration.push(last[2]);
+            found.at.push(last);
             found.force.push(force);
         }
         Some(found)
@@ -282,14 +272,16 @@ impl Along {
 
     /// The variable in a row.
     fn at(&self, row: usize, kind: &Kind, over: Over) -> f64 {
+        let at = self.at[row];
         match over {
-            Over::Variable(Variable::Speed) if kind.is_grip() => self.speed[row].abs(),
-            Over::Variable(Variable::Speed) => self.speed[row],
+            Over::Variable(Variable::Speed) if kind.is_grip() => at.speed.abs(),
+            Over::Variable(Variable::Speed) => at.speed,
             Over::Variable(Variable::Time | Variable::SpeedByTime) => self.time[row],
-            Over::Variable(Variable::Acceleration) => self.acceleration[row],
-            Over::Variable(Variable::Turn) => self.place[row].rem_euclid(TAU),
-            Over::Variable(Variable::Place | Variable::SpeedByPlace) => self.place[row],
-            Over::Period(length) => self.place[row].rem_euclid(length),
+            Over::Variable(Variable::Acceleration) => at.acceleration,
+            Over::Variable(Variable::Signal) => at.signal,
+            Over::Variable(Variable::Turn) => at.place.rem_euclid(TAU),
+            Over::Variable(Variable::Place | Variable::SpeedByPlace) => at.place,
+            Over::Period(length) => at.place.rem_euclid(length),
         }
     }
 
@@ -317,7 +309,8 @@ fn best(
     period: Option<f64>,
     thresholds: &Thresholds,
 ) -> Option<(Over, f64)> {
-    let places = || runs.iter().flat_map(|run| run.place.iter().copied());
+    let all_points = || runs.iter().flat_map(|run| &run.at);
+    let places = || all_points().map(|at| at.place);
     let travel = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
     let mut all: Vec<Over> = period.map(Over::Period).into_iter().collect();
     if kind.turns() && travel > TAU {
@@ -325,9 +318,11 @@ fn best(
     }
     let others = [Variable::Place, Variable::Speed, Variable::Time];
     all.extend(others.map(Over::Variable));
-    let accelerations = || runs.iter().flat_map(|run| run.acceleration.iter());
-    if accelerations().any(|acceleration| *acceleration != 0.0) {
+    if all_points().any(|at| at.acceleration != 0.0) {
         all.push(Over::Variable(Variable::Acceleration));
+    }
+    if all_points().any(|at| at.signal != 0.0) {
+        all.push(Over::Variable(Variable::Signal));
     }
     let mut best: Option<(Over, f64)> = None;
     for over in all {

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! site           where a law may act, as declared, and the words for it        unknown/site.rs
+//! probe          an effect by which a force at a site is felt                  unknown/probe.rs
 //! latent         a force at a site, whatever its course, in the innovations    unknown/latent.rs
 //! felt           a site with a probe run along every record                    unknown/felt.rs
 //! map            of which variable the force is a function                     unknown/map.rs
@@ -26,21 +27,21 @@ mod latent;
 mod law;
 mod map;
 mod places;
+mod probe;
 mod regression;
 mod seen;
 mod site;
 
 pub use factor::Factor;
-pub(crate) use felt::{Felt, PROBE as CURVE_PROBE};
+pub(crate) use felt::Felt;
 pub use found_law::{FoundLaw, Unknown};
 pub use latent::LatentForce;
-pub(crate) use latent::strongest;
 pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub(crate) use places::{Answer, Places};
+pub(crate) use probe::{Point, probe, probes, sizes_of, strongest};
 pub use seen::{Scales, Seen};
 pub use site::{Kind, LawVariable, Site, Written};
-pub(crate) use site::{PROBE as PROBE_SIZES, PROBE_BY_ACCELERATION, Tells, probe};
 
 use super::answer::{Diagnosis, Verdict};
 use super::edges::settled;

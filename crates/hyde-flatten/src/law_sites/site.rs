@@ -50,4 +50,6 @@ pub struct LawSite {
     pub form: LawForm,
     /// Place and speed, or what stands for them.
     pub over: [LawVariable; 2],
+    /// What a law may go with as well: a current, a force.
+    pub signal: Option<LawVariable>,
 }

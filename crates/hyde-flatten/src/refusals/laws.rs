@@ -109,7 +109,7 @@ diagnostics! {
     fn constant_without_value(constant: &Name) = error SiteVariables {
         "the constant `{}` of a shape has no value to begin with", constant.text;
         at constant.span, "neither a variable of a site nor with a value";
-        help "write `{} = {{…}} in … .. …`; the variables are `v`, `x`, `a`, `t`, `v1`, `x1`, `a1`, `t1`, `v_max`, `a_max`, `x_min`, `x_max`, `t_min`, `t_max`", constant.text;
+        help "write `{} = {{…}} in … .. …`; the variables are `v`, `x`, `a`, `u`, `t`, `v1`, `x1`, `a1`, `u1`, `t1`, `v_max`, `a_max`, `u_max`, `x_min`, `x_max`, `t_min`, `t_max`", constant.text;
     }
     fn constant_without_range(constant: &Name) = error SiteVariables {
         "the constant `{}` of a shape has no range", constant.text; at constant.span, "no range";

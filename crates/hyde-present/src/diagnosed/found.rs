@@ -72,6 +72,7 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
         Variable::Speed => latent.speed[k],
         Variable::Time | Variable::SpeedByTime => latent.time[k],
         Variable::Acceleration => latent.acceleration[k],
+        Variable::Signal => latent.signal[k],
         Variable::Turn => latent.place[k].rem_euclid(std::f64::consts::TAU),
         Variable::Place | Variable::SpeedByPlace => latent.place[k],
     };

@@ -38,10 +38,11 @@ pub(crate) enum Step {
 }
 
 /// The axes of a site.
-const AXES: [LawAxis; 4] = [
+const AXES: [LawAxis; 5] = [
     LawAxis::Speed,
     LawAxis::Place,
     LawAxis::Acceleration,
+    LawAxis::Signal,
     LawAxis::Time,
 ];
 
@@ -50,7 +51,11 @@ pub(crate) fn is_tried(shape: &LawShape, kind: &Kind, seen: &Seen) -> bool {
     AXES.iter().all(|&axis| {
         let mut roles = shape.roles.iter().filter(|role| role.axis() == axis);
         let named = roles.clone().next().is_some();
-        let shown = axis != LawAxis::Acceleration || seen.acceleration > 0.0;
+        let shown = match axis {
+            LawAxis::Acceleration => seen.acceleration > 0.0,
+            LawAxis::Signal => seen.signal > 0.0,
+            LawAxis::Speed | LawAxis::Place | LawAxis::Time => true,
+        };
         !named || shown && roles.any(|&role| kind.has(role))
     })
 }
@@ -94,7 +99,8 @@ impl Factor {
         let variables = [
             ("x", place),
             ("v", speed),
-            ("a", kind.acceleration().to_owned()),
+            ("a", "acceleration".to_owned()),
+            ("u", kind.signal()),
         ];
         let words = variables.into_iter().chain(numbers);
         words.fold(self.shape.words.clone(), |text, (name, word)| {
@@ -174,6 +180,7 @@ impl Factor {
                 Some(LawInput::Variable(LawAxis::Acceleration)) => {
                     Along::Rows(&course.acceleration)
                 }
+                Some(LawInput::Variable(LawAxis::Signal)) => Along::Rows(&course.signal),
                 Some(LawInput::Variable(LawAxis::Time)) => Along::Rows(&course.time),
                 Some(LawInput::State(number)) => match filtered.get(number) {
                     Some(values) => Along::Rows(values),
@@ -209,13 +216,16 @@ impl Factor {
             Some(LawInput::Round(LawAxis::Speed)) => scales.speed,
             Some(LawInput::Round(LawAxis::Place)) => scales.place,
             Some(LawInput::Round(LawAxis::Acceleration)) => scales.acceleration,
+            Some(LawInput::Round(LawAxis::Signal)) => scales.signal,
             Some(LawInput::Round(LawAxis::Time)) => scales.time,
             Some(LawInput::Least(LawAxis::Speed)) => -seen.speed,
             Some(LawInput::Least(LawAxis::Acceleration)) => -seen.acceleration,
+            Some(LawInput::Least(LawAxis::Signal)) => -seen.signal,
             Some(LawInput::Least(LawAxis::Place)) => seen.place.0,
             Some(LawInput::Least(LawAxis::Time)) => seen.time.0,
             Some(LawInput::Greatest(LawAxis::Speed)) => seen.speed,
             Some(LawInput::Greatest(LawAxis::Acceleration)) => seen.acceleration,
+            Some(LawInput::Greatest(LawAxis::Signal)) => seen.signal,
             Some(LawInput::Greatest(LawAxis::Place)) => seen.place.1,
             Some(LawInput::Greatest(LawAxis::Time)) => seen.time.1,
             Some(LawInput::Variable(_) | LawInput::State(_)) | None => f64::NAN,
@@ -252,14 +262,10 @@ impl Factor {
 
     fn text(&self, text: &LawText, kind: &Kind, names: &[String]) -> String {
         let named = |number: &usize| match self.shape.inputs.get(*number)? {
-            LawInput::Variable(LawAxis::Speed) => Some(kind.speed.text.clone()),
-            LawInput::Variable(LawAxis::Place) => Some(kind.place.text.clone()),
-            LawInput::Variable(LawAxis::Acceleration) => Some(kind.acceleration.text.clone()),
             LawInput::Variable(LawAxis::Time) => Some("time".to_owned()),
-            LawInput::Round(LawAxis::Speed) => Some(kind.speed.round.clone()),
-            LawInput::Round(LawAxis::Place) => Some(kind.place.round.clone()),
-            LawInput::Round(LawAxis::Acceleration) => Some(kind.acceleration.round.clone()),
+            LawInput::Variable(axis) => kind.named(*axis).map(|own| own.text.clone()),
             LawInput::Round(LawAxis::Time) => Some(kind.round_time.clone()),
+            LawInput::Round(axis) => kind.named(*axis).map(|own| own.round.clone()),
             LawInput::Constant(number) => names.get(*number).cloned(),
             LawInput::State(number) => Some(self.state(*number, names)),
             // No text of a shape has them.
@@ -304,12 +310,13 @@ impl Factor {
         match (mark.as_str(), of) {
             (mark, Some(name)) => format!("{mark}({name})"),
             ("position", None) => kind.mark_of_place().to_owned(),
+            ("current", None) => kind.mark_of_signal().to_owned(),
             (mark, None) => mark.to_owned(),
         }
     }
 
-    /// Which of the round numbers it is written with: speed, place, acceleration, time.
-    pub(crate) fn scales(&self) -> [bool; 4] {
+    /// Which of the round numbers it is written with: speed, place, acceleration, signal, time.
+    pub(crate) fn scales(&self) -> [bool; 5] {
         AXES.map(|axis| self.shape.reads(LawInput::Round(axis)))
     }
 
@@ -322,10 +329,10 @@ impl Factor {
 /// The unit of a quantity at a kind of site.
 fn unit(of: &LawUnit, kind: &Kind) -> NamedUnit {
     match of {
-        LawUnit::Of(LawAxis::Speed) => kind.speed.unit.clone(),
-        LawUnit::Of(LawAxis::Place) => kind.place.unit.clone(),
-        LawUnit::Of(LawAxis::Acceleration) => kind.acceleration.unit.clone(),
-        LawUnit::Of(LawAxis::Time) => NamedUnit::usual(Dimension::TIME),
+        LawUnit::Of(axis) => match kind.named(*axis) {
+            Some(own) => own.unit.clone(),
+            None => NamedUnit::usual(Dimension::TIME),
+        },
         LawUnit::Own(unit) => unit.clone(),
     }
 }

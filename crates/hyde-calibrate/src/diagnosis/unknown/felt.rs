@@ -2,12 +2,14 @@
 
 use super::latent::Carrier;
 use super::law::Summand;
+use super::probe::{probe, probes};
 use super::seen::{Scales, Seen};
-use super::site::{Site, Tells, probe};
+use super::site::Site;
 use crate::diagnosis::inquiry::Author;
 use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};
 use crate::linear::SIDE_BY_SIDE;
+use hyde_ir::LawAxis;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,9 +22,6 @@ pub(crate) struct Felt {
     pub(crate) scales: Scales,
 }
 
-/// What the probe is called: no effect of a user is likely to be.
-pub(crate) const PROBE: &str = "ProbeOfUnknown";
-
 impl Felt {
     /// Runs the probe; `None` where it cannot be put on, or the site never moves.
     pub(crate) fn new(
@@ -31,8 +30,8 @@ impl Felt {
         site: &Site,
         author: &Author<'_>,
     ) -> Option<Self> {
-        let carriers = |tells: Tells| -> Option<Vec<Carrier>> {
-            let built = author(&stage.numbers(), &[probe(site, PROBE, tells)])?;
+        let carriers = |more: &Vec<LawAxis>| -> Option<Vec<Carrier>> {
+            let built = author(&stage.numbers(), &[probe(site, more)])?;
             let path = built.paths.last()?;
             let set = ground.set_in(&built.program, &stage.values());
             let each = ground.recordings.iter();
@@ -41,7 +40,7 @@ impl Felt {
             })
             .collect()
         };
-        let carriers = site.kind.probes().iter().copied().find_map(carriers)?;
+        let carriers = probes(&site.kind).iter().find_map(carriers)?;
         let seen = Seen::of(carriers.iter().map(|carrier| &carrier.course));
         let fine = seen.speed > 0.0 && seen.travel() > 0.0 && seen.speed.is_finite();
         fine.then(|| Self {

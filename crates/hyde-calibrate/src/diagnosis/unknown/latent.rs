@@ -4,12 +4,12 @@
 //! error of the states    eps+ = exp(A T) (I - K C) eps + b0 f(k) + b1 (f(k+1) - f(k))        change    -(C eps + d f(k))
 //! ```
 //! A force acts by b0 and b1; a sensor's error shows by d, and moves the states by what the observer makes of it, `-exp(A T) K d`.
-//! One run of the observer with a probe on the site ([`super::site::probe`]) gives what a unit of force adds to the
+//! One run of the observer with a probe on the site ([`super::probe::probe`]) gives what a unit of force adds to the
 //! equations in every row, and where the site is and how fast. Any course costs a product a row then, and no kernel; and so
 //! does what any change has in common with every course, which is the same rows backwards. Guards are taken to act when they
 //! do without the force.
 
-use super::site::{PROBE, PROBE_BY_ACCELERATION};
+use super::probe::{Point, sizes_of, strongest};
 use crate::diagnosis::projection::dot;
 use crate::linear::{SIDE_BY_SIDE, add_product, set_product, set_products};
 use crate::observer::{Direction, Forces, Known, Modes, Observer, Own, Track, Vectors, When};
@@ -26,6 +26,8 @@ pub(crate) struct Course {
     pub(crate) speed: Vec<f64>,
     /// 0 where the probe does not tell it.
     pub(crate) acceleration: Vec<f64>,
+    /// 0 where the site has none.
+    pub(crate) signal: Vec<f64>,
     /// Whether a force acts at all: a friction that holds has no grip to add to.
     pub(crate) acts: Vec<bool>,
 }
@@ -84,12 +86,10 @@ impl Carrier {
         set: &[(usize, f64)],
         path: &str,
     ) -> Option<Self> {
+        let sizes = sizes_of(program, path);
         let mut directions = Vec::new();
-        let by_acceleration = format!("{path}.{PROBE_BY_ACCELERATION}");
-        let accelerated = program.parameter(&by_acceleration).is_some();
-        let more = accelerated.then_some(PROBE_BY_ACCELERATION);
-        for name in PROBE.into_iter().chain(more) {
-            let (parameter, element) = program.parameter(&format!("{path}.{name}"))?;
+        for name in &sizes {
+            let (parameter, element) = program.parameter(name)?;
             let mut with = set.to_vec();
             with.push((parameter.place + element, 1.0));
             directions.push(Direction {
@@ -116,7 +116,7 @@ impl Carrier {
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
         let (mut passages, mut room) = (BTreeMap::new(), Vectors::default());
         let mut increment = vec![0.0; states];
-        let mut last = Where::default();
+        let mut last = Point::default();
         for (row, passed) in track.route.rows.iter().enumerate() {
             let [before, after] = passed.modes;
             if own.shown {
@@ -128,11 +128,13 @@ impl Carrier {
             let at = track.point(row, When::After, &p, &mut room);
             own.forces(at, &mut forces);
             found.course.time.push(at.t);
-            let at = Where::of(&forces).or_else(|| Where::of(&by_output));
+            let added = strongest(&forces).or_else(|| strongest(&by_output));
+            let at = added.map(|added| Point::told(&sizes, &added));
             last = at.unwrap_or(last);
             found.course.place.push(last.place);
             found.course.speed.push(last.speed);
             found.course.acceleration.push(last.acceleration);
+            found.course.signal.push(last.signal);
             found.course.acts.push(at.is_some());
             let [corrected_by, stepped_by] = [&known.modes[corrected], &known.modes[stepped]];
             let unit = forces.column(0);
@@ -261,41 +263,6 @@ impl Carrier {
     }
 }
 
-/// Where a site is, and how it moves.
-#[derive(Clone, Copy, Default)]
-struct Where {
-    place: f64,
-    speed: f64,
-    acceleration: f64,
-}
-
-impl Where {
-    /// From what its probe adds to some equations: by force, by place, by speed, and by acceleration where it tells it.
-    fn of(added: &DMatrix<f64>) -> Option<Self> {
-        match strongest(added)?.as_slice() {
-            [place, speed, more @ ..] => Some(Self {
-                place: *place,
-                speed: *speed,
-                acceleration: more.first().copied().unwrap_or(0.0),
-            }),
-            _ => None,
-        }
-    }
-}
-
-/// What each direction behind a unit of force adds to the equation that the force changes most, in units of the force.
-pub(crate) fn strongest(added: &DMatrix<f64>) -> Option<Vec<f64>> {
-    let unit = added.column(0);
-    let largest = (0..unit.len()).max_by(|&a, &b| unit[a].abs().total_cmp(&unit[b].abs()));
-    let at = largest.filter(|&at| unit[at] != 0.0)?;
-    let others = 1..added.ncols();
-    Some(
-        others
-            .map(|number| added[(at, number)] / unit[at])
-            .collect(),
-    )
-}
-
 /// Numerics: knots of a smoothed force in a record at most.
 const KNOTS: usize = 200;
 
@@ -310,6 +277,8 @@ pub struct LatentForce {
     pub speed: Vec<f64>,
     /// How fast that changes, SI; 0 where it is not known.
     pub acceleration: Vec<f64>,
+    /// What the site has beside them, SI; 0 where that is nothing.
+    pub signal: Vec<f64>,
     /// The force or torque that the balance would need there, SI.
     pub force: Vec<f64>,
     /// Its standard deviation, SI.
@@ -375,6 +344,7 @@ pub(crate) fn smoothed(carrier: &Carrier, innovations: &[f64]) -> Option<LatentF
         place: of(&carrier.course.place),
         speed: of(&carrier.course.speed),
         acceleration: of(&carrier.course.acceleration),
+        signal: of(&carrier.course.signal),
         deviation: covariance.diagonal().iter().map(|v| v.sqrt()).collect(),
         force: force.iter().copied().collect(),
     })

@@ -86,10 +86,19 @@ impl Law {
             .sum()
     }
 
-    /// Whether it is a function of the acceleration, beside others.
+    /// What it is a function of beside place, speed and time, with the greatest magnitude that records show, SI.
     #[must_use]
-    pub fn is_of_acceleration(&self) -> bool {
-        self.reads(LawAxis::Acceleration)
+    pub fn of_more(&self) -> Vec<(String, f64)> {
+        let all = [
+            (
+                LawAxis::Acceleration,
+                "acceleration".to_owned(),
+                self.seen.acceleration,
+            ),
+            (LawAxis::Signal, self.site.kind.signal(), self.seen.signal),
+        ];
+        let read = all.into_iter().filter(|(axis, ..)| self.reads(*axis));
+        read.map(|(_, name, most)| (name, most)).collect()
     }
 
     /// Whether it is a function of a variable of its site, beside others.
@@ -127,7 +136,7 @@ impl Law {
         let (mut sizes, mut shapes) = (Vec::new(), Vec::new());
         let (mut declared, mut equations) = (String::new(), String::new());
         let mut sum: Vec<String> = Vec::new();
-        let mut used = [false; 4];
+        let mut used = [false; 5];
         let mut signature: Vec<String> = Vec::new();
         let mut taken = kind.taken.clone();
         let single = self.terms.len() == 1;
@@ -203,17 +212,16 @@ impl Law {
             }
         }
         let second = NamedUnit::usual(Dimension::TIME);
+        let of = |axis| kind.named(axis).map(|own| (&own.round, &own.unit));
         let units = [
-            (&kind.speed.round, scales.speed, &kind.speed.unit),
-            (&kind.place.round, scales.place, &kind.place.unit),
-            (
-                &kind.acceleration.round,
-                scales.acceleration,
-                &kind.acceleration.unit,
-            ),
-            (&kind.round_time, scales.time, &second),
+            (of(LawAxis::Speed), scales.speed),
+            (of(LawAxis::Place), scales.place),
+            (of(LawAxis::Acceleration), scales.acceleration),
+            (of(LawAxis::Signal), scales.signal),
+            (Some((&kind.round_time, &second)), scales.time),
         ];
-        for ((own, value, unit), _) in units.iter().zip(used).filter(|(_, used)| *used) {
+        for ((named, value), _) in units.iter().zip(used).filter(|(_, used)| *used) {
+            let Some((own, unit)) = named else { continue };
             let _ = writeln!(
                 text,
                 "  parameter Real {own} = {} [{unit}] \"only a unit for the sizes\";",

@@ -21,6 +21,8 @@ pub enum Variable {
     Place,
     /// Acceleration.
     Acceleration,
+    /// What the site has beside place and speed.
+    Signal,
     /// The angle within a turn.
     Turn,
     /// Time.
@@ -39,7 +41,8 @@ impl Variable {
         match self {
             Self::Speed => speed,
             Self::Place => place,
-            Self::Acceleration => kind.acceleration().to_owned(),
+            Self::Acceleration => "acceleration".to_owned(),
+            Self::Signal => kind.signal(),
             Self::Turn => "angle in a revolution".to_owned(),
             Self::Time => "time".to_owned(),
             Self::SpeedByPlace => format!("{speed} times {place}"),
@@ -54,6 +57,7 @@ impl Variable {
             Self::Speed => kind.speed_unit(),
             Self::Place | Self::Turn | Self::SpeedByPlace => kind.place_unit(),
             Self::Acceleration => kind.acceleration_unit(),
+            Self::Signal => kind.signal_unit(),
             Self::Time | Self::SpeedByTime => "s".to_owned(),
         }
     }
@@ -156,6 +160,9 @@ fn variables(felt: &Felt) -> Vec<Variable> {
     if felt.seen.acceleration > 0.0 {
         all.push(Variable::Acceleration);
     }
+    if felt.seen.signal > 0.0 {
+        all.push(Variable::Signal);
+    }
     if felt.site.kind.turns() && felt.seen.travel() > std::f64::consts::TAU {
         all.push(Variable::Turn);
     }
@@ -186,6 +193,7 @@ fn columns(felt: &Felt, variable: Variable) -> (Vec<f64>, Vec<Vec<f64>>) {
             .collect(),
         Variable::Place | Variable::SpeedByPlace => even(seen.place),
         Variable::Acceleration => even((-seen.acceleration, seen.acceleration)),
+        Variable::Signal => even((-seen.signal, seen.signal)),
         Variable::Time | Variable::SpeedByTime => even(seen.time),
         Variable::Turn => even((0.0, std::f64::consts::TAU)),
     };
@@ -195,6 +203,7 @@ fn columns(felt: &Felt, variable: Variable) -> (Vec<f64>, Vec<Vec<f64>>) {
         Variable::Speed => course.speed[row],
         Variable::Place | Variable::SpeedByPlace => course.place[row],
         Variable::Acceleration => course.acceleration[row],
+        Variable::Signal => course.signal[row],
         Variable::Time | Variable::SpeedByTime => course.time[row],
         Variable::Turn => course.place[row].rem_euclid(std::f64::consts::TAU),
     };

@@ -11,6 +11,8 @@ pub struct Scales {
     pub place: f64,
     /// An acceleration of the record, SI.
     pub acceleration: f64,
+    /// A value of what the site has beside them, SI.
+    pub signal: f64,
     /// A time of the record, s.
     pub time: f64,
 }
@@ -22,6 +24,8 @@ pub struct Seen {
     pub speed: f64,
     /// The greatest acceleration, either way; 0 where the site has none.
     pub acceleration: f64,
+    /// The greatest magnitude of what it has beside them; 0 where that is nothing.
+    pub signal: f64,
     /// From where to where it was.
     pub place: (f64, f64),
     /// From when to when.
@@ -44,6 +48,7 @@ impl Seen {
         Self {
             speed: most(&|course| &course.speed),
             acceleration: most(&|course| &course.acceleration),
+            signal: most(&|course| &course.signal),
             place: range(&|course| &course.place),
             time: range(&|course| &course.time),
         }
@@ -61,6 +66,7 @@ impl Seen {
             speed: round(self.speed),
             place: round(most),
             acceleration: round(self.acceleration),
+            signal: round(self.signal),
             time: round(self.time.1.max(1e-3)),
         }
     }

@@ -43,6 +43,8 @@ pub struct Kind {
     pub(crate) place: Named,
     pub(crate) speed: Named,
     pub(crate) acceleration: Named,
+    /// What the site has beside them.
+    pub(crate) signal: Option<Named>,
     /// What a round time is called.
     pub(crate) round_time: String,
     /// The names that a law must not give to anything of its own.
@@ -72,7 +74,8 @@ pub struct Written {
 }
 
 impl Kind {
-    /// What is declared: the class of the site, what a law is and is added to, its dimension, and its two variables.
+    /// What is declared: the class of the site, what a law is and is added to, its dimension, its two variables, and what it has
+    /// beside them.
     #[must_use]
     pub fn new(
         host: String,
@@ -80,8 +83,10 @@ impl Kind {
         target: LawTarget,
         dimension: Dimension,
         [place, speed]: [LawVariable; 2],
+        signal: Option<LawVariable>,
     ) -> Self {
-        let mut taken = Taken::of(&target, [&place, &speed]);
+        let variables = [&place, &speed].into_iter().chain(&signal);
+        let mut taken = Taken::of(&target, variables);
         let value = NamedUnit::usual(dimension);
         let sizes: &[&str] = match value.text() {
             "N" => &["F", "P"],
@@ -105,6 +110,7 @@ impl Kind {
             size,
             place,
             acceleration: Named::derivative_of(&speed, &mut taken),
+            signal: signal.map(|own| Named::new(own, "u", inside, false, &mut taken)),
             speed,
             round_time: taken.free("t1"),
             taken,
@@ -134,17 +140,19 @@ impl Kind {
             LawRole::Stretch => self.form == LawForm::Elastic,
             LawRole::Demand => self.form == LawForm::Demand,
             LawRole::Acceleration => lies,
+            LawRole::Signal => self.signal.is_some(),
             LawRole::Motion | LawRole::Time => true,
         }
     }
 
-    /// What the derivative of its speed is.
+    /// What it has beside its two variables: a quantity, or the name of the variable.
     #[must_use]
-    pub fn acceleration(&self) -> &'static str {
-        match self.form {
-            LawForm::Motion | LawForm::Friction => "acceleration",
-            LawForm::Elastic | LawForm::Demand => "second derivative",
-        }
+    pub fn signal(&self) -> String {
+        let Some(signal) = &self.signal else {
+            return String::new();
+        };
+        let noun = noun_of(signal.unit.si().text());
+        noun.unwrap_or(&signal.text).to_owned()
     }
 
     /// What place and speed of the site are.
@@ -240,6 +248,23 @@ impl Kind {
         self.acceleration.unit.si().text().to_owned()
     }
 
+    /// The SI unit of what it has beside its two variables.
+    #[must_use]
+    pub fn signal_unit(&self) -> String {
+        let signal = self.signal.as_ref();
+        signal.map_or_else(String::new, |signal| signal.unit.si().text().to_owned())
+    }
+
+    /// The mark that a law of what it has beside its two variables leaves.
+    pub(crate) fn mark_of_signal(&self) -> &'static str {
+        match self.signal_unit().as_str() {
+            "A" => "current",
+            "N" | "N.m" => "torque",
+            "V" | "W" => "velocity",
+            _ => "offset",
+        }
+    }
+
     /// The mark that a law of the place leaves.
     pub(crate) fn mark_of_place(&self) -> &'static str {
         match self.form {
@@ -249,12 +274,16 @@ impl Kind {
         }
     }
 
-    /// What probes of the site tell, the one that tells most first: a place that no state has cannot always be differentiated
-    /// twice.
-    pub(crate) fn probes(&self) -> &'static [Tells] {
-        match self.has(LawRole::Acceleration) {
-            true => &[Tells::Acceleration, Tells::Speed],
-            false => &[Tells::Speed],
+    /// A variable of the site as a law names it; of the time there is none to declare.
+    pub(crate) fn named(&self, axis: LawAxis) -> Option<&Named> {
+        match axis {
+            LawAxis::Place => Some(&self.place),
+            LawAxis::Speed => Some(&self.speed),
+            LawAxis::Acceleration => {
+                Some(&self.acceleration).filter(|_| self.has(LawRole::Acceleration))
+            }
+            LawAxis::Signal => self.signal.as_ref(),
+            LawAxis::Time => None,
         }
     }
 
@@ -271,11 +300,15 @@ impl Kind {
         };
         let accelerates = reads(LawAxis::Acceleration);
         let variables = [
-            (reads(LawAxis::Place), &self.place),
-            (reads(LawAxis::Speed) || accelerates, &self.speed),
-            (accelerates, &self.acceleration),
+            (reads(LawAxis::Place), Some(&self.place)),
+            (reads(LawAxis::Speed) || accelerates, Some(&self.speed)),
+            (accelerates, Some(&self.acceleration)),
+            (reads(LawAxis::Signal), self.signal.as_ref()),
         ];
-        for (_, variable) in variables.iter().filter(|(read, _)| *read) {
+        let read = variables
+            .into_iter()
+            .filter_map(|(read, own)| own.filter(|_| read));
+        for variable in read {
             if let Some(definition) = &variable.definition {
                 text.push_str(&format!("  Real {} = {definition};\n", variable.text));
             }
@@ -291,6 +324,7 @@ fn noun_of(unit: &str) -> Option<&'static str> {
         "N.m" => Some("torque"),
         "V" => Some("voltage"),
         "A" => Some("current"),
+        "W" => Some("power"),
         _ => None,
     }
 }
@@ -346,7 +380,7 @@ pub(crate) struct Taken(Vec<String>);
 
 impl Taken {
     /// Those that the site itself needs.
-    fn of(target: &LawTarget, variables: [&LawVariable; 2]) -> Self {
+    fn of<'v>(target: &LawTarget, variables: impl Iterator<Item = &'v LawVariable>) -> Self {
         let mut words: Vec<String> = ["a", "time", "pi"].map(str::to_owned).to_vec();
         if let LawTarget::Value { name, hold, .. } = target {
             words.push(name.clone());
@@ -376,45 +410,3 @@ impl Taken {
         all.find(is_free).unwrap_or_default()
     }
 }
-
-/// Up to which derivative of the place a probe tells where its site is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tells {
-    Speed,
-    Acceleration,
-}
-
-/// An effect by which a force at a site is felt, or a sensor's error: its sizes are the force, and forces a unit of
-/// place, of speed, and of acceleration where it tells it.
-pub(crate) fn probe(site: &Site, name: &str, tells: Tells) -> Written {
-    let kind = &site.kind;
-    let (unit, of_place, of_speed) = (kind.force_unit(), kind.place_unit(), kind.speed_unit());
-    let (place, speed) = (&kind.place.text, &kind.speed.text);
-    let [force, by_place, by_speed] = PROBE;
-    let size = format!("= 0 [{unit}] in -1 .. 1 [{unit}]");
-    let mut sizes = format!("{force} {size}, {by_place} {size}, {by_speed} {size}");
-    let mut law = format!(
-        "{force} + {by_place}*{place}/(1 [{of_place}]) + {by_speed}*{speed}/(1 [{of_speed}])"
-    );
-    if tells == Tells::Acceleration {
-        let (own, of) = (&kind.acceleration.text, kind.acceleration.unit.text());
-        sizes.push_str(&format!(", {PROBE_BY_ACCELERATION} {size}"));
-        law.push_str(&format!(" + {PROBE_BY_ACCELERATION}*{own}/(1 [{of}])"));
-    }
-    let text = format!(
-        "effect {name} on {}\n  size Real {sizes};\n{}end {name};\n",
-        kind.host,
-        kind.clauses(&format!("({law})"), &|axis| {
-            axis != LawAxis::Acceleration || tells == Tells::Acceleration
-        })
-    );
-    Written {
-        name: name.to_owned(),
-        text,
-        site: site.path.clone(),
-    }
-}
-
-/// The probe's sizes: force, by place, by speed. No variable of a site is likely to be called so.
-pub(crate) const PROBE: [&str; 3] = ["probe_force", "probe_by_place", "probe_by_speed"];
-pub(crate) const PROBE_BY_ACCELERATION: &str = "probe_by_acceleration";
