@@ -9,14 +9,16 @@
 //! kept or taken whole, in as many pieces as equations give them. The unknown of a `modes` block stays in the vector where
 //! a mode fixes a state (its row changes place then) or does not give it explicitly without a division by parameters.
 
+mod torn;
+
 use crate::graph::strongly_connected_components;
 use crate::matching::{Matched, Node, sides};
-use crate::segments::Segment;
 use crate::shapes::{A_FEW, is_shape};
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId};
 use std::collections::{HashMap, HashSet};
+use torn::tear;
 
 /// What becomes of the unknowns.
 pub(crate) struct Order {
@@ -57,56 +59,18 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
         });
     }
     keep_arrays_together(matched, &mut in_vector);
-    loop {
-        let edges: Vec<Vec<usize>> = (0..count)
-            .map(|number| match &explicit[number] {
-                Some(solution) if !in_vector[number] => {
-                    depends_on(system, matched, solution, &in_vector)
-                }
-                _ => Vec::new(),
-            })
-            .collect();
-        let components = strongly_connected_components(&edges);
-        let loops: Vec<&Vec<usize>> = components
-            .iter()
-            .filter(|component| {
-                component.len() > 1 || component.iter().any(|&n| edges[n].contains(&n))
-            })
-            .collect();
-        if loops.is_empty() {
-            let order = components
-                .into_iter()
-                .flatten()
-                .filter(|&number| !in_vector[number]);
-            let definitions = order.filter_map(|number| explicit[number].take()).collect();
-            return Order {
-                definitions,
-                in_vector,
-            };
-        }
-        for component in loops {
-            let mut readers: HashMap<usize, usize> = HashMap::new();
-            for &read in component.iter().flat_map(|&node| &edges[node]) {
-                *readers.entry(read).or_default() += 1;
-            }
-            let torn = component.iter().copied().max_by_key(|&node| {
-                (
-                    matched.unknowns[node].len() == 1,
-                    is_guessed(system, matched.unknowns[node]),
-                    readers.get(&node).copied(),
-                    usize::MAX - node,
-                )
-            });
-            if let Some(torn) = torn {
-                in_vector[torn] = true;
-                system.notes.push(format!(
-                    "`{}` is torn from a loop of {} equations",
-                    crate::matching::name(system, matched.unknowns[torn]),
-                    component.len()
-                ));
-            }
-        }
-        keep_arrays_together(matched, &mut in_vector);
+    let reads = |number: usize| match &explicit[number] {
+        Some(solution) if !in_vector[number] => depends_on(system, matched, solution, &in_vector),
+        _ => Vec::new(),
+    };
+    let mut edges: Vec<Vec<usize>> = (0..count).map(reads).collect();
+    tear(system, matched, &mut edges, &mut in_vector);
+    let order = strongly_connected_components(&edges).into_iter().flatten();
+    let order = order.filter(|&number| !in_vector[number]);
+    let definitions = order.filter_map(|number| explicit[number].take()).collect();
+    Order {
+        definitions,
+        in_vector,
     }
 }
 
@@ -192,13 +156,6 @@ fn solve(
             })
         }
     }
-}
-
-/// Whether the model says where to look for a variable: a solution is looked for from the values of what is in the vector.
-fn is_guessed(system: &System, unknown: Segment) -> bool {
-    let starts = system.starts.get(&(unknown.var, unknown.first));
-    let zero = |value: ExprId| system.flat.exprs.as_constant(value) == Some(0.0);
-    starts.is_some_and(|list| list.iter().any(|(value, ..)| !zero(*value)))
 }
 
 /// Whether a definition reads more than a few values.

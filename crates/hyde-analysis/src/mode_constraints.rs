@@ -6,18 +6,21 @@ use crate::refusals::states as refused;
 use crate::segments::Segment;
 use crate::system::{Branch, System};
 use hyde_diag::Diagnostics;
-use hyde_ir::Expr;
+use hyde_ir::{Expr, VarId};
+use std::collections::BTreeMap;
 
 /// Reports every equation of a mode that relates states alone; whether there was one.
 pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Diagnostics) -> bool {
     let mut found = false;
+    let mut of_variable: BTreeMap<VarId, Vec<&Segment>> = BTreeMap::new();
+    for unknown in unknowns {
+        of_variable.entry(unknown.var).or_default().push(unknown);
+    }
+    let relates_unknowns = |branch: &Branch| relates_unknowns(system, &of_variable, branch);
     for slot in &system.slots {
-        let several = slot
-            .branches
-            .iter()
-            .any(|branch| relates_unknowns(system, unknowns, branch));
+        let several = slot.branches.iter().any(&relates_unknowns);
         for (mode, branch) in slot.branches.iter().enumerate() {
-            if branch.pin.is_some() || !several || relates_unknowns(system, unknowns, branch) {
+            if branch.pin.is_some() || !several || relates_unknowns(branch) {
                 continue;
             }
             let states = states(system, branch);
@@ -39,7 +42,11 @@ pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Di
 }
 
 /// Whether an equation of a mode has anything in it that the mode can determine.
-fn relates_unknowns(system: &System, unknowns: &[Segment], branch: &Branch) -> bool {
+fn relates_unknowns(
+    system: &System,
+    unknowns: &BTreeMap<VarId, Vec<&Segment>>,
+    branch: &Branch,
+) -> bool {
     let leaves = system.flat.exprs.below(&[branch.lhs, branch.rhs]);
     leaves.into_iter().any(|id| {
         let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
@@ -48,9 +55,9 @@ fn relates_unknowns(system: &System, unknowns: &[Segment], branch: &Branch) -> b
         let Some(cell) = System::cell(var, index) else {
             return true;
         };
-        unknowns.iter().any(|unknown| {
-            unknown.var == var && unknown.overlaps(cell.1, cell.1) && (!unknown.state || derivative)
-        })
+        let mut of_variable = unknowns.get(&var).into_iter().flatten();
+        of_variable
+            .any(|unknown| unknown.overlaps(cell.1, cell.1) && (!unknown.state || derivative))
     })
 }
 

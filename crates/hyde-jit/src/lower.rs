@@ -35,6 +35,9 @@ pub(crate) struct Lowering<'a, 'f, 'i> {
     bases: [Option<ir::Value>; Slot::ALL.len()],
     /// Values and truths known in the whole rest of the function.
     known: Known,
+    /// In a tick: the slots that each node reads as bits, and the nodes that read each slot.
+    slots_read: FxHashMap<ExprId, u8>,
+    reading: [Vec<ExprId>; Slot::ALL.len()],
     /// Scalar explicit variables by their place in the workspace.
     explicit: HashMap<i32, ir::Value>,
     /// The places of the workspace that loops read, which find them in memory.
@@ -67,6 +70,11 @@ impl Known {
             Wanted::Number => self.numbers.insert(id, value),
             Wanted::Truth => self.truths.insert(id, value),
         };
+    }
+
+    fn remove(&mut self, id: ExprId) {
+        self.numbers.remove(&id);
+        self.truths.remove(&id);
     }
 }
 
@@ -103,6 +111,8 @@ pub(crate) fn lower<'a>(
         frame,
         bases: [None; Slot::ALL.len()],
         known: Known::default(),
+        slots_read: FxHashMap::default(),
+        reading: Default::default(),
         explicit: HashMap::new(),
         read_in_loops: Vec::new(),
         moving: moving(dae, routine, steps.clone()),
@@ -213,14 +223,37 @@ impl Lowering<'_, '_, '_> {
     }
 
     fn forget_loads(&mut self, slot: Slot) {
-        let (dae, routine) = (self.dae, self.routine);
-        let reads = |id: &ExprId| {
-            dae.exprs.below(&[*id]).into_iter().any(|inner| {
-                matches!(routine.leaf(dae, dae.exprs[inner]), Some(Leaf::Load(s, _)) if s == slot)
-            })
-        };
-        self.known.numbers.retain(|id, _| !reads(id));
-        self.known.truths.retain(|id, _| !reads(id));
+        for id in std::mem::take(&mut self.reading[slot as usize]) {
+            self.known.remove(id);
+        }
+    }
+
+    /// Notes of which slots a node reads, itself or below, so that they can be forgotten.
+    fn note_reads(&mut self, id: ExprId) {
+        let mut slots = self.slots_of(id);
+        self.dae.exprs[id].for_each_child(|child| {
+            slots |= match self.slots_read.get(&child) {
+                Some(known) => *known,
+                None => {
+                    let all = self.dae.exprs.below(&[child]).into_iter();
+                    all.fold(0, |slots, inner| slots | self.slots_of(inner))
+                }
+            };
+        });
+        self.slots_read.insert(id, slots);
+        for slot in Slot::ALL {
+            if slots & (1 << slot as u8) != 0 {
+                self.reading[slot as usize].push(id);
+            }
+        }
+    }
+
+    /// The slot that a node itself reads, as a bit.
+    fn slots_of(&self, id: ExprId) -> u8 {
+        match self.routine.leaf(self.dae, self.dae.exprs[id]) {
+            Some(Leaf::Load(slot, _)) => 1 << slot as u8,
+            Some(Leaf::Counter | Leaf::Number(_) | Leaf::Time | Leaf::IsMode(..)) | None => 0,
+        }
     }
 
     /// Stores a number at a fixed element of a slot.
@@ -257,6 +290,9 @@ impl Lowering<'_, '_, '_> {
             }
             let value = self.node(id, wanted, at, local);
             self.keep(id, wanted, value);
+            if self.routine.tick.is_some() {
+                self.note_reads(id);
+            }
             let known = if self.moving[&id] {
                 &mut *local
             } else {

@@ -10,6 +10,7 @@ use hyde_program::{Output, Program};
 use hyde_report::{Panel, time_panel};
 use hyde_signal::Series;
 use hyde_units::{Dimension, drawn_in, shown};
+use std::collections::BTreeSet;
 
 /// Panels in a figure, and curves in a panel.
 const PANELS: usize = 6;
@@ -106,14 +107,13 @@ pub fn of_run(program: &Program, run: &Run) -> Vec<Panel> {
 
 /// Every variable that there is a reason to draw.
 fn curves(program: &Program, run: &Run) -> Vec<Curve> {
-    let flows: Vec<usize> = flows(program, &run.results)
+    let flows: BTreeSet<usize> = flows(program, &run.results)
         .iter()
         .map(|flow| flow.output)
         .collect();
-    let of_state = |name: &str| {
-        let mut blocks = program.unknowns.iter();
-        blocks.any(|block| block.differential && block.first.is_none() && block.name == name)
-    };
+    let states = program.unknowns.iter();
+    let states = states.filter(|block| block.differential && block.first.is_none());
+    let states: BTreeSet<&str> = states.map(|block| block.name.as_str()).collect();
     let is_read = |name: &str| {
         let mut reductions = program.experiment.reductions.iter();
         reductions.any(|reduction| reads(&reduction.text, name))
@@ -128,7 +128,8 @@ fn curves(program: &Program, run: &Run) -> Vec<Curve> {
         } else if flows.contains(&number) {
             Some(Reason::Flow)
         } else {
-            of_state(&output.name).then_some(Reason::State)
+            let is_state = states.contains(output.name.as_str());
+            is_state.then_some(Reason::State)
         }
     };
     let outputs = program.outputs.iter().enumerate();

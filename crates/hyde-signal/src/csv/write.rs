@@ -2,6 +2,7 @@
 
 use crate::{Column, Written};
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io;
 
@@ -29,13 +30,7 @@ pub fn write<'a>(columns: impl IntoIterator<Item = &'a Column>) -> String {
 pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result<()> {
     let header: Vec<_> = columns.iter().map(header_cell).collect();
     let rows = columns.iter().map(|column| column.values.len());
-    // Columns of the same values in the same unit have the same text.
-    let first_of: Vec<usize> = (0..columns.len())
-        .map(|at| {
-            let same = |&other: &usize| columns[other].reads_as(&columns[at]);
-            (0..at).find(same).unwrap_or(at)
-        })
-        .collect();
+    let first_of = first_of(columns);
     let mut places = vec![0..0; columns.len()];
     let mut cells: Vec<_> = columns.iter().map(Cells::of).collect();
     let mut text = header.join(",");
@@ -56,6 +51,23 @@ pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result
     }
     text.push('\n');
     out.write_all(text.as_bytes())
+}
+
+/// Of each column the first with the same text: of the same values in memory, in the same unit.
+fn first_of(columns: &[Written<'_>]) -> Vec<usize> {
+    let mut at_address: HashMap<*const (), Vec<usize>> = HashMap::new();
+    let first = |(at, column): (usize, &Written<'_>)| {
+        let known = at_address.entry(column.values.address()).or_default();
+        let same = known
+            .iter()
+            .copied()
+            .find(|&other| columns[other].reads_as(column));
+        same.unwrap_or_else(|| {
+            known.push(at);
+            at
+        })
+    };
+    columns.iter().enumerate().map(first).collect()
 }
 
 /// The cells of a column from the first row to the last. The text of a value that stays is made once.
