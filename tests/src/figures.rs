@@ -42,6 +42,7 @@ mod residual_cost;
 mod selftest;
 mod start;
 mod stick;
+mod three_effects;
 mod thresholds;
 mod traces;
 mod travelling_nut;
@@ -145,5 +146,6 @@ pub const FIGURES: &[Figure] = &[
     diagnosis::WINDOWS,
     diagnosis::FREE_RUN,
     diagnosis::MINUTES,
+    three_effects::FIGURE,
     thresholds::FIGURE,
 ];

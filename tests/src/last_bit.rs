@@ -150,6 +150,11 @@ impl Random {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// Nearly of a normal distribution: the sum of twelve numbers between 0 and 1, without its mean.
+    pub(crate) fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
+    }
+
     /// Of either sign, from a millionth to a thousand.
     fn number(&mut self) -> f64 {
         let size = 10_f64.powf(9.0 * self.unit() - 6.0);
