@@ -132,3 +132,18 @@ fn a_drive_that_weakens_as_its_current_warms_it_is_found_and_written() {
         .unwrap();
     assert!((tau / 0.2 - 1.0).abs() < 0.1, "{tau}");
 }
+
+/// A reading head whose holder bends as it is accelerated.
+#[test]
+fn an_error_of_the_scale_that_goes_with_the_acceleration_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.PositionSensor
+           wrap s by s - 3 [um]*der(v)/(1 [m/s2]);
+           Velocity v = der(a.s);
+         end Odd;",
+        " with Odd on scale",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "scale");
+    assert!(law.contains("wrap s by s + e*acc/acc1;"), "{law}");
+}

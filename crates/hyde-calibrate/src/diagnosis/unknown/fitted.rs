@@ -89,10 +89,16 @@ impl Fitting<'_> {
         let (felt, projection) = (self.felt, self.projection);
         let (first, gain) = (own.law.terms[0].clone(), own.gains[0]);
         let thresholds = &self.gates.thresholds;
-        let near = |(_, other): &&(Summand, f64)| *other >= thresholds.rival * gain;
-        let rivals = own.others.iter().filter(near);
-        let rivals = rivals.take(thresholds.few);
-        let rivals: Vec<(Summand, f64)> = rivals.cloned().collect();
+        // As many products as shapes alone: of products there are more.
+        let mut rivals: Vec<(Summand, f64)> = Vec::new();
+        for rival in &own.others {
+            let shapes = rival.0.factors.len();
+            let alike = rivals.iter();
+            let alike = alike.filter(|(known, _)| known.factors.len() == shapes);
+            if rival.1 >= thresholds.rival * gain && alike.count() < thresholds.few {
+                rivals.push(rival.clone());
+            }
+        }
         if rivals.is_empty() {
             return Begun {
                 selected: own,

@@ -67,14 +67,16 @@ pub(crate) fn select(
             .collect();
         tried += scored.len();
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
-        // The best of each form.
+        // The best of each form, as many products as shapes alone: there are more of them.
         let most = scored.first().map_or(0.0, |(_, gain)| *gain);
         let before = gains.last().copied().unwrap_or(0.0);
         let mut forms: Vec<(Summand, f64)> = Vec::new();
         for (term, gain) in scored {
             let worth = gain - before >= thresholds.contender * (most - before);
             let new = !forms.iter().any(|(known, _)| same_form(known, &term));
-            if worth && new && forms.len() < 2 * thresholds.few {
+            let alike = forms.iter();
+            let alike = alike.filter(|(known, _)| known.factors.len() == term.factors.len());
+            if worth && new && alike.count() < 2 * thresholds.few {
                 forms.push((term, gain));
             }
         }
