@@ -84,6 +84,7 @@ const CHANNELS: [(&str, &str, &str, f64, f64); 4] = [
 ];
 
 /// Writes the record of the axis with the three effects along the motion of another record.
+#[allow(clippy::disallowed_methods, reason = "a record is made of another")]
 fn record(motion: &Path, seed: u64, folder: &Path) -> Result<(), String> {
     let text = std::fs::read(motion).map_err(|error| error.to_string())?;
     let asked = csv::read(&text, &Layout::default()).map_err(|error| format!("{error:?}"))?;
