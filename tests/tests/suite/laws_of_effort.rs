@@ -1,6 +1,17 @@
 //! Laws of what drives and of what is lost: of an acceleration and its direction, of losses behind a low pass.
 
 use crate::unknown_effects::{AMPLIFIER, diagnosed, diagnosed_on, law_alone};
+use serde_json::Value;
+
+/// The size of the law that was found, or a constant of its shape.
+fn size(found: &Value) -> f64 {
+    found["effects"][0]["size"].as_f64().unwrap()
+}
+
+fn constant(found: &Value, name: &str) -> f64 {
+    let shape = &found["effects"][0]["shape"];
+    shape[name]["value"].as_f64().unwrap()
+}
 
 /// A sign that no speed and no place has: it grips while it is accelerated, and lets go while it is braked.
 #[test]
@@ -15,10 +26,9 @@ fn a_friction_that_goes_with_the_acceleration_is_found_and_written() {
     let law = law_alone(&found);
     assert!(law.contains("wrap grip by grip + F*tanh(acc/a0);"), "{law}");
     assert!(law.contains("Real acc = der(v);"), "{law}");
-    let effect = &found["effects"][0];
-    let size = effect["size"].as_f64().unwrap();
+    let size = size(&found);
     assert!((size / 25.0 - 1.0).abs() < 0.05, "{size}");
-    let a0 = effect["shape"]["a0"]["value"].as_f64().unwrap();
+    let a0 = constant(&found, "a0");
     assert!((a0 / 0.3 - 1.0).abs() < 0.2, "{a0}");
 }
 
@@ -34,10 +44,7 @@ fn a_mass_of_one_direction_is_found_and_written() {
     );
     let law = law_alone(&found);
     assert!(law.contains("acc/acc1"), "{law}");
-    assert!(
-        law.contains("Real acc = der(v);") || law.contains("Real acc = der("),
-        "{law}"
-    );
+    assert!(law.contains("Real acc = der("), "{law}");
 }
 
 /// The losses of viscous friction, behind a low pass.
@@ -57,11 +64,10 @@ fn a_friction_that_goes_with_viscous_losses_is_found_and_written() {
     assert!(law.contains("wrap grip by grip + F*warmth_tau;"), "{law}");
     let filter = "tau*der(warmth_tau) = (v/v1)^2 - warmth_tau;";
     assert!(law.contains(filter), "{law}");
-    let effect = &found["effects"][0];
-    let tau = effect["shape"]["tau"]["value"].as_f64().unwrap();
+    let tau = constant(&found, "tau");
     assert!((tau / 0.15 - 1.0).abs() < 0.1, "{tau}");
     // 25 N at 100 mm/s are 100 N at the 200 mm/s that sizes are given at.
-    let size = effect["size"].as_f64().unwrap();
+    let size = size(&found);
     assert!((size / 100.0 - 1.0).abs() < 0.1, "{size}");
 }
 
@@ -82,9 +88,7 @@ fn a_friction_that_goes_with_its_own_losses_is_found_and_written() {
     assert!(law.contains("wrap grip by grip + F*lost_tau;"), "{law}");
     let filter = "tau*der(lost_tau) = a.f/u1*v/v1 - lost_tau;";
     assert!(law.contains(filter), "{law}");
-    let tau = found["effects"][0]["shape"]["tau"]["value"]
-        .as_f64()
-        .unwrap();
+    let tau = constant(&found, "tau");
     assert!((tau / 0.2 - 1.0).abs() < 0.1, "{tau}");
 }
 
@@ -127,9 +131,7 @@ fn a_drive_that_weakens_as_its_current_warms_it_is_found_and_written() {
     assert!(law.contains(text), "{law}");
     let filter = "tau*der(heat_tau) = (i_ref/x1)^2 - heat_tau;";
     assert!(law.contains(filter), "{law}");
-    let tau = found["effects"][0]["shape"]["tau"]["value"]
-        .as_f64()
-        .unwrap();
+    let tau = constant(&found, "tau");
     assert!((tau / 0.2 - 1.0).abs() < 0.1, "{tau}");
 }
 

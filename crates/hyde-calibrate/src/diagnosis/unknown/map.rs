@@ -1,4 +1,5 @@
-//! [`Map`]: of what a force at a site would have to be a function: of speed, place, time, or one of them times speed.
+//! [`Map`]: of what a force at a site would have to be a function: of speed, place, acceleration, the signal of the site, time,
+//! or of place or time times speed.
 //!
 //! For each variable the force is any piecewise linear function of it, and what that gains, with all parameters answering,
 //! says how much of the innovations such a law could explain. The same is tried on innovations shifted against the record,
