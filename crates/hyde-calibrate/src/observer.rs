@@ -29,4 +29,4 @@ pub(crate) use input_noise::MATERIAL;
 pub(crate) use lateness::{KNOWN_TO, changes_if_late};
 pub(crate) use over_record::{When, forget_missing, run, run_while};
 pub(crate) use tangent::{Direction, Forces, Known, Modes, Own, Shape, Slopes, along, changes};
-pub(crate) use track::{Track, Vectors};
+pub(crate) use track::{Place, Track, Vectors};

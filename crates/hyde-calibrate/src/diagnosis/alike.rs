@@ -7,7 +7,7 @@
 
 use super::stage::Ground;
 use super::trial::Trial;
-use crate::observer::{Track, Vectors, When, state_names};
+use crate::observer::{Place, Track, Vectors, When, state_names};
 use crate::plant::{Plant, Unsupported};
 use hyde_program::Program;
 
@@ -56,7 +56,7 @@ fn looks(track: &Track<'_>, program: &Program) -> Looks {
         for (number, &place) in places.iter().enumerate() {
             // Any rows without relation to each other.
             let row = (look * 7919 + number * 104_729) % rows;
-            let at = track.point(row, When::After, &p, &mut room);
+            let at = track.point(Place::Row(row, When::After), &p, &mut room);
             let times = LARGER.powf((12.9898 * look as f64 + 78.233 * number as f64).sin());
             into.push(times * at.y[place]);
             squares[number] += at.yp[place].powi(2);

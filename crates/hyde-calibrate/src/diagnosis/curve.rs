@@ -18,7 +18,7 @@ use super::stage::{Ground, flat};
 use super::thresholds::Thresholds;
 use super::unknown::{Felt, Kind, Point, Site, Variable, probe, probes, sizes_of, strongest};
 use crate::fit::inflation;
-use crate::observer::{Direction, Forces, Innovations, Own, Track, Vectors, When};
+use crate::observer::{Direction, Forces, Innovations, Own, Place, Track, When};
 use crate::records::Recording;
 use hyde_ir::LawAxis;
 use hyde_program::Program;
@@ -237,7 +237,7 @@ impl Along {
         directions.push(with(&mut sizes.iter().cloned(), 0.0)?);
         let track = Track::new(program, recording, ground.observer, set).ok()?;
         let p = recording.parameters(program, set);
-        let mut own = Own::new(program, &p, &directions);
+        let mut own = Own::new(program, (&track, p.as_slice()), &directions);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
         let mut found = Self {
@@ -246,16 +246,13 @@ impl Along {
             force: Vec::new(),
             innovations: track.route.innovations.clone(),
         };
-        let mut room = Vectors::default();
         let mut last = Point::default();
         for row in 0..track.route.rows.len() {
             if own.shown {
-                let at = track.point(row, When::Before, &p, &mut room);
-                own.seen(at, &mut by_output);
+                own.seen(Place::Row(row, When::Before), &mut by_output);
             }
-            let at = track.point(row, When::After, &p, &mut room);
-            own.forces(at, &mut forces);
-            found.time.push(at.t);
+            own.forces(Place::Row(row, When::After), &mut forces);
+            found.time.push(track.route.time(row));
             let shown = strongest(&forces).or_else(|| strongest(&by_output));
             let force = match shown.as_deref() {
                 Some([told @ .., without]) => {

@@ -3,6 +3,7 @@
 
 use super::projection::dot;
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector};
+use std::ops::Range;
 
 /// Numerics: rows summed at once.
 const BLOCK: usize = 32;
@@ -19,7 +20,7 @@ pub(crate) struct Products {
     pub(crate) with_each_other: Vec<DMatrix<f64>>,
     /// Of each shape, what parts of a second gain on their own; and how many there were.
     apart: Vec<f64>,
-    parts: usize,
+    parts: Vec<usize>,
 }
 
 impl Products {
@@ -30,28 +31,30 @@ impl Products {
             with_record: DMatrix::zeros(derivatives + 1, shapes * sizes),
             with_each_other: vec![DMatrix::zeros(sizes, sizes); shapes],
             apart: vec![0.0; shapes],
-            parts: 0,
+            parts: vec![0; shapes],
         }
     }
 
     /// What a shape would gain if each part of a second had sizes of its own, parameters standing still, less what chance
     /// makes of as many parts: of a sum of squares of normal numbers that is their number.
     pub(crate) fn apart(&self, shape: usize) -> f64 {
-        let freedoms = (self.parts * self.sizes) as f64;
+        let freedoms = (self.parts[shape] * self.sizes) as f64;
         self.apart[shape] - freedoms
     }
 
-    /// Adds the rows of a record as they come: see [`Adding`].
+    /// Adds the rows of a record as they come, of some of the shapes: see [`Adding`].
     pub(crate) fn adding<'p>(
         &'p mut self,
+        shapes: Range<usize>,
         record: &'p DMatrix<f64>,
         channels: usize,
         step_s: f64,
     ) -> Adding<'p> {
-        let block = DMatrix::zeros(BLOCK * channels, self.with_record.ncols());
-        let part = Part::new(self.with_each_other.len(), self.sizes);
+        let block = DMatrix::zeros(BLOCK * channels, shapes.len() * self.sizes);
+        let part = Part::new(shapes.len(), self.sizes);
         Adding {
             products: self,
+            shapes,
             part,
             blocks_of_a_part: ((PART_S / step_s / BLOCK as f64).round() as usize).max(1),
             record,
@@ -91,6 +94,7 @@ impl Part {
 /// Rows of a record on their way into sums.
 pub(crate) struct Adding<'p> {
     products: &'p mut Products,
+    shapes: Range<usize>,
     part: Part,
     blocks_of_a_part: usize,
     record: &'p DMatrix<f64>,
@@ -123,23 +127,26 @@ impl Adding<'_> {
     }
 
     fn end_part(&mut self) {
-        let (shapes, sizes) = (self.products.apart.len(), self.products.sizes);
-        for shape in 0..shapes {
-            self.products.apart[shape] += self.part.gain(shape);
+        for (number, shape) in self.shapes.clone().enumerate() {
+            self.products.apart[shape] += self.part.gain(number);
+            self.products.parts[shape] += 1;
         }
-        self.products.parts += 1;
-        self.part = Part::new(shapes, sizes);
+        self.part = Part::new(self.shapes.len(), self.products.sizes);
     }
 
     fn sum(&mut self) {
         let rows = self.block.rows(0, self.filled);
         let own = self.record.columns(self.first, self.filled);
-        self.products.with_record.gemm(1.0, &own, &rows, 1.0);
+        let sizes = self.products.sizes;
+        let (first, count) = (self.shapes.start * sizes, self.shapes.len() * sizes);
+        let mut with_record = self.products.with_record.columns_mut(first, count);
+        with_record.gemm(1.0, &own, &rows, 1.0);
         let innovations = own.row(own.nrows() - 1).transpose();
-        let (sizes, stride) = (self.products.sizes, self.block.nrows());
+        let stride = self.block.nrows();
         let values = self.block.as_slice();
         let column = |number: usize| &values[number * stride..number * stride + self.filled];
-        for (shape, products) in self.products.with_each_other.iter_mut().enumerate() {
+        let with_each_other = &mut self.products.with_each_other[self.shapes.clone()];
+        for (shape, products) in with_each_other.iter_mut().enumerate() {
             for i in 0..sizes {
                 for j in 0..=i {
                     let product = dot(column(shape * sizes + i), column(shape * sizes + j));

@@ -10,6 +10,7 @@ use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::{DMatrixView, DVector};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Numerics: the part of its range that a size is given to differentiate by it.
 const SMALL: f64 = 1e-4;
@@ -51,22 +52,34 @@ impl Runs<'_> {
         shapes: &[Vec<f64>],
     ) -> Option<(Products, DVector<f64>)> {
         let count = hypothesis.sizes.len();
-        let set = self.set(&vec![0.0; count], shapes.first()?);
         let mut products = Products::new(projection.parameters(), shapes.len(), count);
         let mut innovations = Vec::new();
         for (number, record) in projection.records.iter().enumerate() {
             let recording = &self.ground.recordings[number];
-            let own = self.shapes(hypothesis, recording, shapes);
-            let mut forces = Slopes::new(self.program, &own);
-            let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
-            let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
-            let p = recording.parameters(self.program, &set);
-            let own = self.on_track(number, (&set, &p), |track| {
-                along(track, recording, &p, &mut forces, each);
-                track.route.innovations.clone()
-            });
-            innovations.push(own?);
-            adding.end();
+            let (channels, step_s) = (recording.channels.len(), recording.step_s);
+            let all = self.shapes(hypothesis, recording, shapes);
+            let mut add = |few: Range<usize>, tracks: &[Track<'_>]| {
+                let mut forces = Slopes::new(self.program, &all[few.clone()], tracks);
+                let mut adding = products.adding(few, record, channels, step_s);
+                let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
+                along(&tracks[0], recording, &mut forces, each);
+                adding.end();
+            };
+            // Shapes along one route are differentiated at once.
+            let mut together: Vec<Track<'_>> = Vec::new();
+            for (next, shape) in shapes.iter().enumerate() {
+                let track = self.track(number, &self.set(&vec![0.0; count], shape))?;
+                if together
+                    .first()
+                    .is_some_and(|known| !known.runs_with(&track))
+                {
+                    add(next - together.len()..next, &together);
+                    together.clear();
+                }
+                together.push(track);
+            }
+            add(shapes.len() - together.len()..shapes.len(), &together);
+            innovations.push(together.first()?.route.innovations.clone());
         }
         Some((products, DVector::from_vec(flat(&innovations))))
     }
@@ -77,36 +90,27 @@ impl Runs<'_> {
         let set = self.set(&vec![0.0; count], shapes);
         let mut columns = vec![Vec::new(); count];
         for (number, recording) in self.ground.recordings.iter().enumerate() {
-            let own = self.shapes(hypothesis, recording, &[shapes.to_vec()]);
-            let mut forces = Slopes::new(self.program, &own);
-            let p = recording.parameters(self.program, &set);
-            let own = self.on_track(number, (&set, &p), |track| {
-                changes(track, recording, &p, &mut forces)
-            });
-            for (column, change) in columns.iter_mut().zip(own?.column_iter()) {
+            let all = self.shapes(hypothesis, recording, &[shapes.to_vec()]);
+            let track = [self.track(number, &set)?];
+            let mut forces = Slopes::new(self.program, &all, &track);
+            let changes = changes(&track[0], recording, &mut forces);
+            for (column, change) in columns.iter_mut().zip(changes.column_iter()) {
                 column.extend(change.iter());
             }
         }
         Some(columns)
     }
 
-    /// What something makes of the track of a record: that of the stage, as it is or with what the effect brings along, or
-    /// one of its own.
-    fn on_track<T>(
-        &self,
-        number: usize,
-        (set, p): (&[(usize, f64)], &[f64]),
-        make: impl FnOnce(&Track<'_>) -> T,
-    ) -> Option<T> {
+    /// The track of a record with a shape of the effect: that of the stage, as it is or with what the effect brings along, or one
+    /// of its own.
+    fn track(&self, number: usize, set: &[(usize, f64)]) -> Option<Track<'_>> {
         let (known, recording) = (&self.tracks[number], &self.ground.recordings[number]);
-        if known.serves(self.program, p) {
-            return Some(make(known));
+        if known.serves(self.program, &recording.parameters(self.program, set)) {
+            return Some(known.clone());
         }
-        let own = match known.carrying(self.program, recording, set) {
-            Some(own) => own,
-            None => Track::new(self.program, recording, self.ground.observer, set).ok()?,
-        };
-        Some(make(&own))
+        known
+            .carrying(self.program, recording, set)
+            .or_else(|| Track::new(self.program, recording, self.ground.observer, set).ok())
     }
 
     /// Every shape, and what its sizes change, a little above 0: many are nothing but a corner at 0.

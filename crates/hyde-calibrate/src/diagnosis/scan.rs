@@ -218,16 +218,10 @@ impl Scanner<'_> {
     fn look(&self, promised: &Promised, shapes: &[Vec<f64>]) -> Option<Look> {
         let hypothesis = &self.hypotheses[promised.number];
         let runs = self.runs(promised);
-        // What has states of its own moves by itself as its shapes say, also at size 0: each shape has a track of its own.
-        let chunk = if promised.program.n_unknowns > self.stage.program.n_unknowns {
-            1
-        } else {
-            CHUNK
-        };
         let (mut nodes, mut apart) = (Vec::new(), Vec::new());
         let mut seen = f64::INFINITY;
         let mut plain = None;
-        for chunk in shapes.chunks(chunk) {
+        for chunk in shapes.chunks(CHUNK) {
             let (products, innovations) = runs.products(hypothesis, self.projection, chunk)?;
             let answers = self.projection.answers(&products);
             for (number, (shape, answer)) in chunk.iter().zip(answers).enumerate() {

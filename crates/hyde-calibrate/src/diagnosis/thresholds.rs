@@ -124,11 +124,11 @@ thresholds! {
     grown: f64 = 0.25,
         because "a cost that grows by a quarter of the prediction has an interval twice as wide",
         removed 0.0;
-    /// Share of the best improvement above which a hypothesis may still become the best: of scores, of fits after a few steps, of rivals beside a residual, of terms whose constants are not refined.
+    /// Share of the best improvement above which a hypothesis may still become the best: of scores, of fits after a few steps, of rivals beside a residual, of terms whose constants are not refined, of a law in place of effects that explain as much.
     contender: f64 = 0.5,
         because "the linear prediction is good to a factor of two",
         removed 1.0;
-    /// Share of the best improvement above which another effect, another site or another first term of a law is a rival of the best, and is fitted on as long as it can reach the best.
+    /// Share of the best improvement above which another effect, another site, another place of a period or another first term of a law is a rival of the best, and is fitted on as long as it can reach the best.
     rival: f64 = 0.8,
         because "an effect bends towards what is missing beside it by up to a fifth of its improvement",
         removed 1.0;

@@ -211,7 +211,7 @@ pub(crate) fn begin<'s>(
     };
     // A few steps from every node, the rest from the best of them.
     let nodes = score.nodes.iter();
-    let nodes = nodes.filter(|node| node.gain >= ground.thresholds.contender * score.gain());
+    let nodes = nodes.filter(|node| node.gain >= ground.thresholds.rival * score.gain());
     let mut best = nodes.filter_map(from).fold(None, better);
     let gains = |(own, ..): &Refit| own.gain_over(&stage.solution) > 0.0;
     if anew && !best.as_ref().is_some_and(gains) {

@@ -79,11 +79,14 @@ pub(super) fn propose(
         None => Places::of(&there, declared)?,
     };
     let lawful = diagnosis.frozen.is_empty();
-    let law = |places: Places<'_>| match lawful {
-        true => places.law(gates),
+    let law = |places: Places<'_>, least: f64| match lawful {
+        true => places.law(least, gates),
         false => places.answer(None),
     };
-    let Some(alone) = places.map(law) else {
+    // A law alone has to gain what the effects do that were taken in.
+    let theirs = last.solution.gain_over(&declared.solution);
+    let least = inquiry.thresholds.contender * theirs;
+    let Some(alone) = places.map(|places| law(places, least)) else {
         return Ok(());
     };
     if last.effects.is_empty() {
@@ -108,7 +111,7 @@ pub(super) fn propose(
     };
     let room = last.effects.len() < inquiry.max_effects;
     if room && diagnosis.unexplained && !answer.as_ref().is_some_and(explains) {
-        let both = Places::of(inquiry, &last)?.map(law);
+        let both = Places::of(inquiry, &last)?.map(|places| law(places, 0.0));
         let as_good = |alone: &Answer| {
             let both = both.as_ref().and_then(Answer::solution);
             let alone = alone.solution();

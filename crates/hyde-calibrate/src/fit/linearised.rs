@@ -111,8 +111,9 @@ impl Problem<'_> {
                     let recording = &self.recordings[record];
                     let own = part.iter().map(|&number| direction(recording, number));
                     let own: Vec<Direction> = own.collect();
-                    let mut forces = Own::new(self.program, &p[record], &own);
-                    changes(&tracks[record], recording, &p[record], &mut forces)
+                    let here = (&tracks[record], p[record].as_slice());
+                    let mut forces = Own::new(self.program, here, &own);
+                    changes(&tracks[record], recording, &mut forces)
                 });
                 each.collect()
             },

@@ -11,7 +11,7 @@
 use super::input_noise::rates;
 use super::over_record::When;
 use super::tangent::Known;
-use super::track::{Track, Vectors};
+use super::track::{Place, Track, Vectors};
 use crate::plant::Unsupported;
 use crate::records::Recording;
 use hyde_program::{Program, Workspace};
@@ -55,7 +55,7 @@ pub(crate) fn changes_if_late(
             }
         }
         let own = &route.configurations[after];
-        let at = track.point(row, When::After, p, &mut room);
+        let at = track.point(Place::Row(row, When::After), p, &mut room);
         let [linear, held] = by_column[after]
             .get_or_insert_with(|| rates(program, &route.places, own, at, &mut workspace));
         let step = &own.steps[0];

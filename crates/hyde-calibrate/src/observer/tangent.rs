@@ -16,11 +16,10 @@ mod passage;
 mod slopes;
 
 use super::over_record::When;
-use super::track::{Passing, Track, Vectors};
+use super::track::{Passing, Place, Track};
 use crate::linear::{add_low_rank_across, set_product};
 use crate::plant::{length, shortest_steps, size_of};
 use crate::records::Recording;
-use hyde_program::Point;
 pub(crate) use known::{Known, Modes};
 use nalgebra::{DMatrix, DMatrixView};
 pub(crate) use own::Own;
@@ -44,9 +43,9 @@ pub(crate) trait Forces {
     /// Whether some direction changes what is measured.
     fn shown(&self) -> bool;
     /// What a unit of each adds to the residual of the equations that are touched.
-    fn forces(&mut self, at: Point<'_>, out: &mut DMatrix<f64>);
+    fn forces(&mut self, place: Place<'_>, out: &mut DMatrix<f64>);
     /// What it adds to what the channels show.
-    fn seen(&mut self, at: Point<'_>, out: &mut DMatrix<f64>);
+    fn seen(&mut self, place: Place<'_>, out: &mut DMatrix<f64>);
 }
 
 /// A product of matrices is faster than one a column from this many columns on.
@@ -56,7 +55,6 @@ const MANY: usize = 8;
 pub(crate) fn changes(
     track: &Track<'_>,
     recording: &Recording,
-    p: &[f64],
     forces: &mut impl Forces,
 ) -> DMatrix<f64> {
     let channels = recording.channels.len();
@@ -70,16 +68,15 @@ pub(crate) fn changes(
             }
         }
     };
-    along(track, recording, p, forces, keep);
+    along(track, recording, forces, keep);
     change
 }
 
 /// The same, row by row: `each` gets the number of a row that counts, and how its whitened innovations change, a row a
-/// channel, a column a direction. `p` are the parameters where the track is, of its program or of one that it serves.
+/// channel, a column a direction.
 pub(crate) fn along(
     track: &Track<'_>,
     recording: &Recording,
-    p: &[f64],
     own: &mut impl Forces,
     mut each: impl FnMut(usize, DMatrixView<'_, f64>),
 ) {
@@ -95,18 +92,15 @@ pub(crate) fn along(
     let (mut then, mut reached) = (now.clone(), now.clone());
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
-    let mut room = Vectors::default();
     // The combination of modes in which the last row was left, and what bends there.
     let (mut left, mut bend) = (0, None);
     for (row, passed) in route.rows.iter().enumerate() {
         let [before_it, next] = passed.modes;
         let seen = known.modes(row, When::Before, before_it);
         if own.shown() {
-            let at = track.point(row, When::Before, p, &mut room);
-            own.seen(at, &mut by_output);
+            own.seen(Place::Row(row, When::Before), &mut by_output);
         }
-        let at_end = track.point(row, When::After, p, &mut room);
-        own.forces(at_end, &mut then);
+        own.forces(Place::Row(row, When::After), &mut then);
         let bend_next = route.bend(next, Passing::Row(row, When::After));
         // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
         let same = next == before_it;
@@ -123,8 +117,7 @@ pub(crate) fn along(
                 known.kick(configuration, bend, length(mode), &now, &mut before);
                 number += mode.len();
                 if let Some(event) = event {
-                    let at = track.within(row, &event.before, p, &mut room);
-                    own.forces(at, &mut reached);
+                    own.forces(Place::Within(row, &event.before), &mut reached);
                     bend = route.bend(configuration, Passing::Leg(number - 1, When::Before));
                 } else {
                     reached.copy_from(if same { &then } else { &now });
@@ -145,8 +138,7 @@ pub(crate) fn along(
                 known.kick(configuration, bend, length(mode), &reached, &mut before);
                 if let Some(event) = event {
                     fix(&event.fixed, &mut before);
-                    let at = track.within(row, &event.after, p, &mut room);
-                    own.forces(at, &mut now);
+                    own.forces(Place::Within(row, &event.after), &mut now);
                     configuration = event.configuration;
                     bend = route.bend(configuration, Passing::Leg(number - 1, When::After));
                 }

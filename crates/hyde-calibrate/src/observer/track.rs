@@ -32,6 +32,7 @@ pub(crate) use vectors::Vectors;
 const SAME: f64 = 1e-9;
 
 /// A run of an observer over a record, in the vectors of a program.
+#[derive(Clone)]
 pub(crate) struct Track<'p> {
     pub(crate) route: Arc<Route<'p>>,
     /// If this is another program than the route's: what it has beside.
@@ -60,6 +61,15 @@ pub(crate) struct Route<'p> {
     values: Vec<f64>,
     memories: Vec<Vec<f64>>,
     bends: Bends,
+}
+
+/// A place on a track.
+#[derive(Clone, Copy)]
+pub(crate) enum Place<'a> {
+    /// A row, before its correction or after it.
+    Row(usize, When),
+    /// An instant on the way to a row.
+    Within(usize, &'a Instant),
 }
 
 /// A row: everything before its correction, and after it.
@@ -174,36 +184,38 @@ impl<'p> Track<'p> {
             && places(own) == places(other)
     }
 
-    /// Where a row was, with some parameters.
+    /// The point at a place, with some parameters.
     pub(crate) fn point<'a>(
         &'a self,
-        row: usize,
-        when: When,
+        place: Place<'a>,
         p: &'a [f64],
         room: &'a mut Vectors,
     ) -> Point<'a> {
-        let at = self.route.point(row, when, p);
-        match &self.carried {
-            None => at,
-            Some(carried) => carried.point(row, when, at, room),
-        }
-    }
-
-    /// An instant on the way to a row, with some parameters.
-    pub(crate) fn within<'a>(
-        &'a self,
-        row: usize,
-        instant: &'a Instant,
-        p: &'a [f64],
-        room: &'a mut Vectors,
-    ) -> Point<'a> {
-        let at = instant.point(p);
+        let at = match place {
+            Place::Row(row, when) => self.route.point(row, when, p),
+            Place::Within(_, instant) => instant.point(p),
+        };
         let Some(carried) = &self.carried else {
             return at;
         };
-        let rows = &self.route.rows;
-        let (begin, end) = (rows[row - 1].t, rows[row].t);
-        carried.within(row, (at.t - begin) / (end - begin), at, room)
+        match place {
+            Place::Row(row, when) => carried.point(row, when, at, room),
+            Place::Within(row, _) => {
+                let rows = &self.route.rows;
+                let (begin, end) = (rows[row - 1].t, rows[row].t);
+                carried.within(row, (at.t - begin) / (end - begin), at, room)
+            }
+        }
+    }
+
+    /// Whether another track of the same program is along the same route, its equations in the same places: directions on both
+    /// are differentiated by the same matrices.
+    pub(crate) fn runs_with(&self, other: &Self) -> bool {
+        let equations = |track: &Self| {
+            let carried = track.carried.as_ref();
+            carried.map(|own| own.equations.clone())
+        };
+        Arc::ptr_eq(&self.route, &other.route) && equations(self) == equations(other)
     }
 
     /// The steps that led to a row.
@@ -278,6 +290,11 @@ fn derivatives(program: &Program, at: Point<'_>) -> [DMatrix<f64>; 2] {
 }
 
 impl Route<'_> {
+    /// The time of a row, s.
+    pub(crate) fn time(&self, row: usize) -> f64 {
+        self.rows[row].t
+    }
+
     /// Where a row was, in the vectors of the route's program.
     pub(crate) fn point<'a>(&'a self, row: usize, when: When, p: &'a [f64]) -> Point<'a> {
         let passed = &self.rows[row];

@@ -1,7 +1,7 @@
 //! [`Controller`]: the clocked parts that put a command out, run beside the track of an observer.
 
 use super::{Uncompared, Why};
-use crate::observer::{Track, Vectors, When};
+use crate::observer::{Place, Track, Vectors, When};
 use crate::records::Recording;
 use hyde_program::{Constant, Function, Point, Program, TickWrt, Workspace, Wrt};
 
@@ -136,7 +136,7 @@ impl<'p> Controller<'p> {
         let mut pending: Vec<(i64, usize, Vec<f64>)> = Vec::new();
         let mut found = [Vec::new(), Vec::new()];
         for row in 0..recording.rows() {
-            let at = track.point(row, When::After, p, &mut room);
+            let at = track.point(Place::Row(row, When::After), p, &mut room);
             let mut z = at.z.to_vec();
             if let Some(memory) = &memory {
                 self.own.iter().for_each(|&place| z[place] = memory[place]);

@@ -22,7 +22,7 @@ const NAME: &str = "Found";
 pub(super) struct Wanted {
     /// Its terms at most.
     pub(super) terms: usize,
-    /// What its first term gains in the linear answer at least.
+    /// What it gains in the linear answer at least.
     pub(super) least: f64,
     /// It explains all.
     pub(super) all: bool,
@@ -52,7 +52,7 @@ impl Fitting<'_> {
     pub(super) fn law(&self) -> Option<(Trial, Selected)> {
         let gate = self.gates.of_one(&self.stage.solution);
         let own = self.select(gate, None)?;
-        if own.gains[0] < self.wanted.least {
+        if *own.gains.last()? < self.wanted.least {
             return None;
         }
         let begun = self.with_best_first(own, gate);

@@ -12,7 +12,7 @@
 use super::probe::{Point, sizes_of, strongest};
 use crate::diagnosis::projection::dot;
 use crate::linear::{SIDE_BY_SIDE, add_product, set_product, set_products};
-use crate::observer::{Direction, Forces, Known, Modes, Observer, Own, Track, Vectors, When};
+use crate::observer::{Direction, Forces, Known, Modes, Observer, Own, Place, Track, When};
 use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -110,24 +110,22 @@ impl Carrier {
             states,
         };
         let p = recording.parameters(program, set);
-        let mut own = Own::new(program, &p, &directions);
+        let mut own = Own::new(program, (&track, p.as_slice()), &directions);
         let mut known = Known::new(&track, recording, &own.touched);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
-        let (mut passages, mut room) = (BTreeMap::new(), Vectors::default());
+        let mut passages = BTreeMap::new();
         let mut increment = vec![0.0; states];
         let mut last = Point::default();
         for (row, passed) in track.route.rows.iter().enumerate() {
             let [before, after] = passed.modes;
             if own.shown {
-                let at = track.point(row, When::Before, &p, &mut room);
-                own.seen(at, &mut by_output);
+                own.seen(Place::Row(row, When::Before), &mut by_output);
             }
             let corrected = known.modes(row, When::Before, before);
             let stepped = known.modes(row, When::After, after);
-            let at = track.point(row, When::After, &p, &mut room);
-            own.forces(at, &mut forces);
-            found.course.time.push(at.t);
+            own.forces(Place::Row(row, When::After), &mut forces);
+            found.course.time.push(track.route.time(row));
             let added = strongest(&forces).or_else(|| strongest(&by_output));
             let at = added.map(|added| Point::told(&sizes, &added));
             last = at.unwrap_or(last);

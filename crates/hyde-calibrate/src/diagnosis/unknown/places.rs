@@ -72,11 +72,11 @@ impl<'a> Places<'a> {
         })
     }
 
-    /// The law that explains most.
-    pub(crate) fn law(self, gates: Gates) -> Answer {
+    /// The law that explains most, if one promises to gain so much at least.
+    pub(crate) fn law(self, least: f64, gates: Gates) -> Answer {
         let wanted = Wanted {
             terms: gates.thresholds.law_terms,
-            least: 0.0,
+            least,
             all: false,
         };
         let best = self.best(wanted, gates);

@@ -1,6 +1,7 @@
 //! [`Own`]: forces by differences: evaluations of the model with other parameters where the plant is.
 
 use super::{Direction, Forces};
+use crate::observer::track::{Place, Track, Vectors};
 use crate::plant::measured;
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
@@ -10,6 +11,10 @@ const ROUNDING: f64 = 1e-13;
 
 /// Evaluations of the model with other parameters where the plant is.
 pub(crate) struct Own<'p> {
+    /// Where the plant is, with the parameters as they are.
+    track: &'p Track<'p>,
+    p: &'p [f64],
+    room: Vectors,
     /// The equations that some direction changes.
     pub(crate) touched: Vec<usize>,
     /// Their residuals.
@@ -23,7 +28,12 @@ pub(crate) struct Own<'p> {
 }
 
 impl<'p> Own<'p> {
-    pub(crate) fn new(program: &'p Program, p: &[f64], directions: &'p [Direction]) -> Self {
+    /// Those of a program along a track that is its own or serves it; `p` are its parameters there.
+    pub(crate) fn new(
+        program: &'p Program,
+        (track, p): (&'p Track<'p>, &'p [f64]),
+        directions: &'p [Direction],
+    ) -> Self {
         let moved = |place: usize| {
             directions
                 .iter()
@@ -42,6 +52,9 @@ impl<'p> Own<'p> {
         let residual = program.kernels.some_rows(Function::Residual, &touched);
         let channels = program.experiment.measured.len();
         Self {
+            track,
+            p,
+            room: Vectors::default(),
             residual: Rows::new(residual, touched.len()),
             measured: Rows::new(measured(program), channels),
             shown: !rows(Function::Outputs).is_empty(),
@@ -65,13 +78,15 @@ impl Forces for Own<'_> {
         self.shown
     }
 
-    fn forces(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
+    fn forces(&mut self, place: Place<'_>, out: &mut DMatrix<f64>) {
+        let at = self.track.point(place, self.p, &mut self.room);
         let workspace = &mut self.workspace;
         self.residual
             .changes(at, self.directions, workspace, ROUNDING, out);
     }
 
-    fn seen(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
+    fn seen(&mut self, place: Place<'_>, out: &mut DMatrix<f64>) {
+        let at = self.track.point(place, self.p, &mut self.room);
         let workspace = &mut self.workspace;
         self.measured
             .changes(at, self.directions, workspace, 0.0, out);

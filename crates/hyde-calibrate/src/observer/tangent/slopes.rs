@@ -1,7 +1,9 @@
-//! [`Slopes`]: forces by derivatives, of many shapes of one effect: one evaluation a shape tells those of all its sizes.
+//! [`Slopes`]: forces by derivatives, of many shapes of one effect: one evaluation a shape tells those of all its sizes. What the
+//! effect brings along moves as its shapes say: each shape has a track of its own then, all of them along one route.
 
 use super::Forces;
-use hyde_program::{Function, PartialEntry, Point, Program, SomeRows, Workspace, Wrt};
+use crate::observer::track::{Place, Track, Vectors};
+use hyde_program::{Function, PartialEntry, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
@@ -19,7 +21,10 @@ pub(crate) struct Slopes<'p> {
     residual: Chosen<'p>,
     measured: Chosen<'p>,
     shapes: &'p [Shape],
+    /// Where the plant is with each.
+    tracks: &'p [Track<'p>],
     workspace: Workspace,
+    room: Vectors,
 }
 
 /// Some derivatives of a function by parameters.
@@ -31,7 +36,8 @@ struct Chosen<'p> {
 }
 
 impl<'p> Slopes<'p> {
-    pub(crate) fn new(program: &'p Program, shapes: &'p [Shape]) -> Self {
+    /// Those of shapes along a track each.
+    pub(crate) fn new(program: &'p Program, shapes: &'p [Shape], tracks: &'p [Track<'p>]) -> Self {
         let moved = shapes
             .iter()
             .flat_map(|shape| shape.by_size.iter().flatten());
@@ -46,7 +52,9 @@ impl<'p> Slopes<'p> {
             residual: Chosen::new(program, Function::Residual, &touched, &moved),
             measured: Chosen::new(program, Function::Outputs, &channels, &moved),
             shapes,
+            tracks,
             workspace: Workspace::new(program.n_work),
+            room: Vectors::default(),
             touched,
         }
     }
@@ -65,12 +73,16 @@ impl Forces for Slopes<'_> {
         !self.measured.places.is_empty()
     }
 
-    fn forces(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
-        self.residual.put(at, self.shapes, &mut self.workspace, out);
+    fn forces(&mut self, place: Place<'_>, out: &mut DMatrix<f64>) {
+        let room = (&mut self.room, &mut self.workspace);
+        let shapes = self.shapes.iter().zip(self.tracks);
+        self.residual.put(place, shapes, room, out);
     }
 
-    fn seen(&mut self, at: Point<'_>, out: &mut DMatrix<f64>) {
-        self.measured.put(at, self.shapes, &mut self.workspace, out);
+    fn seen(&mut self, place: Place<'_>, out: &mut DMatrix<f64>) {
+        let room = (&mut self.room, &mut self.workspace);
+        let shapes = self.shapes.iter().zip(self.tracks);
+        self.measured.put(place, shapes, room, out);
     }
 }
 
@@ -102,17 +114,17 @@ impl<'p> Chosen<'p> {
     }
 
     /// What a unit of each size of each shape changes of the rows: a column a size.
-    fn put(
+    fn put<'s>(
         &mut self,
-        at: Point<'_>,
-        shapes: &[Shape],
-        workspace: &mut Workspace,
+        place: Place<'_>,
+        shapes: impl Iterator<Item = (&'s Shape, &'s Track<'s>)>,
+        (room, workspace): (&mut Vectors, &mut Workspace),
         out: &mut DMatrix<f64>,
     ) {
         out.fill(0.0);
         let mut columns = 0..;
-        for shape in shapes {
-            let at = Point { p: &shape.p, ..at };
+        for (shape, track) in shapes {
+            let at = track.point(place, &shape.p, room);
             self.derivatives.evaluate(at, workspace, &mut self.values);
             for (size, column) in shape.by_size.iter().zip(&mut columns) {
                 for ((row, place), value) in self.places.iter().zip(&self.values) {

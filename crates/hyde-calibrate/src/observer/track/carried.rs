@@ -27,6 +27,7 @@ const PARTS: u32 = 8;
 const NEAR: f64 = 1e-3;
 
 /// Unknowns that an effect brings, along a track.
+#[derive(Clone)]
 pub(crate) struct Carried {
     /// The unknowns of the route's program in the vector of this one.
     pub(super) counterparts: Counterparts,

@@ -11,6 +11,7 @@ use crate::plant::Places;
 use hyde_program::{Point, Program};
 
 /// Where each unknown of the track's program is in the vector of another program, and the sign it has there.
+#[derive(Clone)]
 pub(super) struct Counterparts {
     pub(super) positions: Vec<usize>,
     pub(super) signs: Vec<f64>,
