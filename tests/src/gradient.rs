@@ -12,6 +12,8 @@ use hyde_signal::Table;
 use hyde_sim::Results;
 use std::collections::BTreeMap;
 
+/// How many times its tolerance a run may be from the solution: steps add up, and a row behind an event is as late as that.
+const ERRORS: f64 = 100.0;
 /// Relative steps of a parameter.
 const STEPS: [f64; 4] = [3e-3, 1e-3, 1e-4, 1e-5];
 /// Those for the bench axis, whose runs take long.
@@ -120,6 +122,8 @@ pub struct Compared {
     pub error: f64,
     /// The largest derivative by differences.
     pub largest: f64,
+    /// What the tolerance of the runs makes of a difference, as a part of the largest derivative.
+    pub noise: f64,
     /// Rows compared, of all.
     pub rows: (usize, usize),
 }
@@ -271,6 +275,11 @@ impl Compare<'_> {
             largest = largest.max(quotient.abs());
             count += 1;
         }
+        let size = exact.column(output).ok_or("no column")?;
+        let size = size
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        let tolerance = self.options.rtol.unwrap_or(1e-6);
         // Not a number is no agreement, and nothing compared neither.
         let finite = column.iter().all(|slope| slope.is_finite()) && largest > 0.0;
         Ok(Compared {
@@ -281,6 +290,7 @@ impl Compare<'_> {
                 f64::INFINITY
             },
             largest,
+            noise: ERRORS * tolerance * size / step / largest,
             rows: (count, rows.len()),
         })
     }

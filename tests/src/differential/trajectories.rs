@@ -3,10 +3,12 @@
 use hyde_program::{Method, Program};
 use hyde_sim::{Results, Setup, simulate};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// How far an event may be from its place in the reference, in s: a jump there is no disagreement.
 const SHIFT: f64 = 2e-5;
-/// Columns whose values all are smaller are nought but for rounding.
+/// Columns whose values all are smaller, or a smaller part of the largest of their unit, are nought but for rounding: forces of
+/// a body at rest cancel.
 const NOTHING: f64 = 1e-7;
 /// How much farther than a state a rate or a force may be: the tolerance of a step is for the states, which stiff parts
 /// multiply.
@@ -58,6 +60,17 @@ pub(super) fn first_difference(program: &Program, a: &Results, b: &Results) -> O
     None
 }
 
+/// The numbers of the rows from one time to another.
+fn rows(results: &Results, from: f64, to: f64) -> Range<usize> {
+    let from = results.time.partition_point(|&time| time < from);
+    from..results.time.partition_point(|&time| time <= to)
+}
+
+fn largest(column: &[f64]) -> f64 {
+    let sizes = column.iter().map(|value| value.abs());
+    sizes.fold(0.0, f64::max)
+}
+
 /// The value that is farthest outside a bound around the reference, as a part of the largest of its column. Names of the
 /// columns of `other` go through `renamed`.
 pub(super) fn outside(
@@ -85,9 +98,14 @@ pub(super) fn outside(
         let Some(others) = other.column(found) else {
             continue;
         };
-        let size = column
-            .iter()
-            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        let of_its_kind = program.outputs[number].dimension;
+        let alike = reference.kept();
+        let alike = alike.filter(|(other, _)| program.outputs[*other].dimension == of_its_kind);
+        let most = alike.fold(0.0, |most: f64, (_, column)| {
+            most.max(largest(&column.values()))
+        });
+        let size = Some(largest(&column)).filter(|own| *own > NOTHING * most);
+        let size = size.unwrap_or(most);
         let part = if states.contains(name) {
             bound
         } else {
@@ -99,15 +117,20 @@ pub(super) fn outside(
                 continue;
             };
             // Rows of the reference near this instant, events among them.
-            let from = reference.time.partition_point(|&time| time < t - SHIFT);
-            let to = reference.time.partition_point(|&time| time <= t + SHIFT);
-            let near = &column[from..to];
+            let near = &column[rows(reference, t - SHIFT, t + SHIFT)];
             let low = near.iter().fold(f64::INFINITY, |a, &b| a.min(b));
             let high = near.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
             let all_known = near.iter().all(|value| value.is_finite());
-            for row in [first, last] {
-                let value = others[row];
-                let off = (low - value).max(value - high);
+            // What was or comes so soon before or after it is a jump, whatever it is meanwhile.
+            for near in [
+                rows(other, t - SHIFT, t).start..first + 1,
+                last..rows(other, t, t + SHIFT).end,
+            ] {
+                let values = &others[near];
+                let off = |value: &f64| (low - value).max(value - high);
+                let nearest = values.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+                let value = nearest.copied().unwrap_or(f64::NAN);
+                let off = off(&value);
                 let wrong = all_known != value.is_finite() || off > allowed;
                 let times = off / allowed;
                 if wrong && worst.as_ref().is_none_or(|(most, _)| times > *most) {

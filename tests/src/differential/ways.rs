@@ -249,7 +249,7 @@ impl<'a> Subject<'a> {
         let wrong = found
             .iter()
             .filter(|one| one.largest > 1e-6 && one.rows.0 > 2 * one.rows.1 / 3)
-            .find(|one| one.error.is_nan() || one.error > GRADIENT);
+            .find(|one| one.error.is_nan() || one.error > GRADIENT + one.noise);
         Ok(wrong.map_or(Verdict::Agrees, |wrong| {
             Verdict::Disagrees(format!("{wrong:?}"))
         }))
