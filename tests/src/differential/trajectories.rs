@@ -8,7 +8,7 @@ use std::ops::Range;
 /// How far an event may be from its place in the reference, in s: a jump there is no disagreement.
 const SHIFT: f64 = 2e-5;
 /// Columns whose values all are smaller, or a smaller part of the largest of their unit, are nought but for rounding: forces of
-/// a body at rest cancel.
+/// a body at rest cancel. Loose tolerances leave more of them, a thousandth of the bound.
 const NOTHING: f64 = 1e-7;
 /// How much farther than a state a rate or a force may be: the tolerance of a step is for the states, which stiff parts
 /// multiply.
@@ -111,7 +111,7 @@ pub(super) fn outside(
         } else {
             NO_STATE * bound
         };
-        let allowed = part * size + NOTHING;
+        let allowed = part * size + NOTHING.max(1e-3 * bound);
         for &t in reference.time.iter() {
             let Some((first, last)) = other.rows_at(t) else {
                 continue;
