@@ -126,3 +126,16 @@ fn what_a_record_pulls_loose_breaks_away_once_and_when_the_record_says() {
         }
     }
 }
+
+/// No state moves, so no error of a state shortens a step: rows within one are no mere interpolation of the forces.
+#[test]
+fn what_holds_a_body_is_the_drive_between_steps_too() {
+    let run = solve_with("held_body", "pulled", &Options::default());
+    for (t, holds) in run.time().iter().zip(run.column("guide.a.f").iter()) {
+        let pulls = 3.0 * (2.0 * std::f64::consts::PI * 8.0 * t).sin();
+        assert!(
+            (holds - pulls).abs() < 1e-9,
+            "{holds} N at {t} s, {pulls} N"
+        );
+    }
+}

@@ -123,7 +123,7 @@ pub(super) fn keep_largest(largest: &mut Lanes, values: &Lanes) {
 pub(super) struct Estimated {
     /// The largest error inside the step, in parts of what is seen there.
     pub(super) inside: f64,
-    /// The largest difference of the two formulas, in units of the tolerance.
+    /// The largest difference of the two formulas, and of the interpolant to a stage, in units of the tolerance.
     pub(super) rough: f64,
 }
 
@@ -170,10 +170,11 @@ pub(super) fn estimate(
         for k in 0..LANES {
             // What fills up a group has no size and no tolerance.
             let size = seen * larger(largest[k], stage[k].abs()) + atol[k];
+            let off = larger(beyond[k].abs(), error[k].abs());
+            rough[k] = larger(h * off * weights[k], rough[k]);
             let part = h * beyond[k].abs() / size;
             beyond[k] = if counted[k] > 0.0 { part } else { 0.0 };
             most[k] = larger(beyond[k], most[k]);
-            rough[k] = larger((h * error[k] * weights[k]).abs(), rough[k]);
             error[k] = last[k] + cj * h * error[k];
         }
         (inside[group], errors[group]) = (beyond, error);
