@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 
 /// By how much start values are changed, and how far the differences may be off, as a part of the change.
 const CHANGE: f64 = 1e-6;
-const OFF: f64 = 2e-3;
+const OFF: f64 = 5e-4;
 /// The time over which differences are followed: short against the vibrations of the models, in s.
 const SPAN: f64 = 1e-3;
 
