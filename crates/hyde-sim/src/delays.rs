@@ -119,12 +119,18 @@ impl Delays {
         }
     }
 
-    /// Adds a step with its values at the places of a history, and forgets what is read no longer.
+    /// Adds a step, or a part of it, with its values at the places of a history.
     pub(crate) fn keep(&mut self, from: f64, to: f64, values: &[Vec<f64>; 7]) {
         for (number, line) in self.lines.iter_mut().enumerate() {
             let values = std::array::from_fn(|place| values[place][number]);
             line.history.push(Step { from, to, values });
-            line.history.forget(to - line.time_s);
+        }
+    }
+
+    /// Forgets what is not read at `t` or later.
+    pub(crate) fn forget(&mut self, t: f64) {
+        for line in &mut self.lines {
+            line.history.forget(t - line.time_s);
         }
     }
 }

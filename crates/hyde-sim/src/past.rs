@@ -64,6 +64,8 @@ pub(crate) fn mark(
 pub(crate) fn record(integrator: &mut Integrator<'_>, from: f64, to: f64) {
     if !integrator.state().delays.is_empty() && to > from {
         record_part(integrator, from, to, 0, f64::INFINITY);
+        // What lies inside this step is solved for by steps that begin where it does.
+        integrator.state_mut().delays.forget(from);
     }
 }
 

@@ -76,6 +76,13 @@ fn a_delay_equation_has_the_solution_of_the_method_of_steps() {
 }
 
 #[test]
+fn the_one_step_method_meets_it_as_well() {
+    // Its steps are long, and their histories are kept in parts.
+    let run = solve("delays", "one_step");
+    follows(&run, "x", 1e-7, by_steps);
+}
+
+#[test]
 fn without_a_delay_the_value_is_the_one_of_now() {
     let example = model("delays", Some("scalar")).set("T", 0.0);
     let (compiled, run) = example.run_with(&Options::default()).unwrap();
