@@ -64,7 +64,8 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
         _ => Vec::new(),
     };
     let mut edges: Vec<Vec<usize>> = (0..count).map(reads).collect();
-    tear(system, matched, &mut edges, &mut in_vector);
+    let known = (matched, explicit.as_slice());
+    tear(system, known, &declared, &mut edges, &mut in_vector);
     let order = strongly_connected_components(&edges).into_iter().flatten();
     let order = order.filter(|&number| !in_vector[number]);
     let definitions = order.filter_map(|number| explicit[number].take()).collect();

@@ -1,25 +1,46 @@
 //! [`tear`]: of each loop of definitions one variable after the other goes back into the vector, until no loop is left.
+//!
+//! ```text
+//! a = (q - f)/m;  f = J*a - drive        a is torn where m is small: of f the solver knows no more than its tolerance,
+//!                                        and 1/m would make it an error of a
+//! ```
 
+use super::Explicit;
 use crate::graph::strongly_connected_components;
 use crate::matching::{Matched, name};
 use crate::segments::Segment;
 use crate::system::System;
-use hyde_ir::ExprId;
-use std::collections::HashMap;
+use hyde_ir::{Expr, ExprId, VarId};
+use std::collections::{HashMap, HashSet};
+
+/// A definition is steeper than another if it multiplies what it reads by so many times more.
+const STEEPER: f64 = 1e3;
 
 /// Puts variables into the vector until the definitions of the others have an order. `edges` are what each definition reads;
 /// those of what is torn, and to it, are taken out.
 pub(super) fn tear(
     system: &mut System,
-    matched: &Matched,
+    (matched, explicit): (&Matched, &[Option<Explicit>]),
+    declared: &[Vec<f64>],
     edges: &mut [Vec<usize>],
     in_vector: &mut [bool],
 ) {
     let mut loops = loops_of(edges);
+    let mut steepness = HashMap::new();
+    for component in &loops {
+        let variables = component.iter().map(|&node| matched.unknowns[node].var);
+        let variables: HashSet<VarId> = variables.collect();
+        for &node in component {
+            if let Some(definition) = &explicit[node] {
+                let own = steepness_of(system, declared, definition.value, &variables);
+                steepness.insert(node, own);
+            }
+        }
+    }
     // Without an edge no new loop begins: only what was one is looked at again.
     while !loops.is_empty() {
         for component in &loops {
-            let Some(torn) = most_read(system, matched, edges, component) else {
+            let Some(torn) = best(system, matched, edges, &steepness, component) else {
                 continue;
             };
             // An array stays whole.
@@ -45,11 +66,30 @@ pub(super) fn tear(
     }
 }
 
-/// Of a loop the variable that most definitions of it read; a scalar before an array, one with a guess before others.
-fn most_read(
+/// By how many powers of [`STEEPER`] a definition multiplies what it reads of a loop, with the parameters as declared.
+fn steepness_of(
+    system: &mut System,
+    declared: &[Vec<f64>],
+    value: ExprId,
+    of_loop: &HashSet<VarId>,
+) -> i32 {
+    let read = |expr| matches!(expr, Expr::Var(var, _) if of_loop.contains(&var));
+    let gradient = system.exprs().gradient(value, read);
+    let factors = gradient.iter();
+    let factors = factors.filter_map(|(_, factor)| system.value_with(declared, *factor));
+    let most = factors.fold(1.0, |most: f64, factor| most.max(factor.abs()));
+    #[allow(clippy::cast_possible_truncation, reason = "at most 102")]
+    let powers = (most.ln() / STEEPER.ln()).floor() as i32;
+    powers
+}
+
+/// Of a loop the variable that most definitions of it read; a scalar before an array, one with a guess before others, one
+/// with a steep definition before those with flat ones.
+fn best(
     system: &System,
     matched: &Matched,
     edges: &[Vec<usize>],
+    steepness: &HashMap<usize, i32>,
     component: &[usize],
 ) -> Option<usize> {
     let mut readers: HashMap<usize, usize> = HashMap::new();
@@ -60,6 +100,7 @@ fn most_read(
         (
             matched.unknowns[node].len() == 1,
             is_guessed(system, matched.unknowns[node]),
+            steepness.get(&node).copied(),
             readers.get(&node).copied(),
             usize::MAX - node,
         )
