@@ -35,7 +35,7 @@ pub struct LedgerEntry {
 pub struct EnergyLedger {
     /// The components that took part, in the order of the model.
     pub entries: Vec<LedgerEntry>,
-    /// The energy that passed, in J: through connectors, and supplied from outside.
+    /// The energy that passed, in J: through connectors, lost or gained at events, and supplied from outside.
     pub passed: f64,
 }
 

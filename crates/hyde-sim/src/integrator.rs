@@ -244,6 +244,12 @@ impl<'a> Integrator<'a> {
         follows
     }
 
+    /// Turns relations over if that has no effect where the run is. Whether it has none.
+    pub(crate) fn turns_without_effect(&mut self, relations: &[usize]) -> bool {
+        let state = self.solver.state_mut();
+        state.turns_without_effect(relations, self.now.at())
+    }
+
     /// Exact values where modes fix states, and on the surfaces that the run slides on.
     fn apply_pins(&mut self) {
         let state = self.solver.state_mut();

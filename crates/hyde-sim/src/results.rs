@@ -96,7 +96,7 @@ pub struct Energies {
     pub accounts: Vec<f64>,
     /// What a stored energy jumped by at events.
     pub jumps: Vec<f64>,
-    /// What went through all ports, without regard to sign.
+    /// What went through all ports, and what stored energies jumped by, without regard to sign.
     pub passed: f64,
 }
 

@@ -239,13 +239,21 @@ impl<'a> Simulation<'a> {
         watched: &[usize],
         from: f64,
     ) -> Result<Option<Crossing>, Box<Failure>> {
+        // Where the search begins: behind crossings without effect.
+        let mut after = from;
         loop {
             let (integrator, consistent) = (&mut self.integrator, &mut self.consistent);
             let trail = &mut self.trail;
-            let found = guards::first_change(integrator, consistent, trail, watched, from);
+            let found = guards::first_change(integrator, consistent, trail, watched, after);
             let Some(crossing) = &found else {
                 return Ok(None);
             };
+            if !same_instant(crossing.t, after)
+                && integrator.turns_without_effect(&crossing.relations)
+            {
+                after = crossing.t;
+                continue;
+            }
             let (before, behind) = (crossing.t - from, integrator.now.t - crossing.t);
             let just_behind = behind < 2.0 * JUST_BEHIND * (before + behind);
             // So near to where it began, the time itself is no more exact.

@@ -4,6 +4,7 @@ mod loose;
 mod parameters;
 mod sliding;
 mod surfaces;
+mod without_effect;
 
 use crate::delays::Delays;
 use crate::failure::Failure;

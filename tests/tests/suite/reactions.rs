@@ -95,3 +95,20 @@ fn pre_is_the_value_before_what_switches_at_the_same_instant() {
     assert_eq!(last(&climb, "n"), 0.0);
     assert_eq!(last(&climb, "m"), 1.0);
 }
+
+#[test]
+fn what_turns_without_effect_is_no_event_and_restarts_nothing() {
+    let run = solve("reactions", "idle");
+    // Since 3.5 s x = cos(w t) rises through 0 after 3.75 and 4.75 periods, turns at 1 after 4 and falls through 0 after 4.25.
+    let period = 2.0 * std::f64::consts::PI / 40.0_f64.sqrt();
+    let expected = [3.75, 4.0, 4.25, 4.75].map(|periods| periods * period);
+    let times: Vec<f64> = run.events().iter().map(|(t, _)| *t).collect();
+    assert_eq!(times.len(), expected.len(), "{times:?}");
+    for (found, known) in times.iter().zip(expected) {
+        // An oscillation of five periods at rtol 1e-9.
+        close(*found, known, 1e-6);
+    }
+    assert_eq!((last(&run, "late"), last(&run, "turns")), (2.0, 1.0));
+    // At the start and at the four events; none at all the crossings before 3.5 s.
+    assert_eq!(run.run.results.statistics.restarts, 5);
+}
