@@ -146,6 +146,7 @@ impl Case {
         };
         let compared = Compare {
             program: &compiled.program,
+            differences_of: &compiled.program,
             tables: &tables,
             options,
             steps: &STEPS,
@@ -178,6 +179,7 @@ pub fn compare_bench(parameters: &[&str]) -> Result<Vec<Compared>, String> {
     };
     let compared = Compare {
         program: &compiled.program,
+        differences_of: &compiled.program,
         tables: &loaded.tables,
         options,
         steps: &STEPS_OF_BENCH,
@@ -189,14 +191,16 @@ pub fn compare_bench(parameters: &[&str]) -> Result<Vec<Compared>, String> {
 /// A model to be compared with differences.
 pub(crate) struct Compare<'a> {
     pub(crate) program: &'a Program,
+    /// The same model with the method whose runs the differences are of.
+    pub(crate) differences_of: &'a Program,
     pub(crate) tables: &'a BTreeMap<String, Table>,
     pub(crate) options: Options,
     pub(crate) steps: &'a [f64],
 }
 
 impl Compare<'_> {
-    fn solve(&self, options: &Options) -> Result<Run, String> {
-        let run = hyde_experiment::run(self.program, self.tables, options);
+    fn solve(&self, program: &Program, options: &Options) -> Result<Run, String> {
+        let run = hyde_experiment::run(program, self.tables, options);
         run.map_err(|error| {
             // Without the results up to there.
             if let RunError::Failed(failure) = error {
@@ -212,10 +216,11 @@ impl Compare<'_> {
         parameters: &[&str],
         outputs: &[&str],
     ) -> Result<Vec<Compared>, String> {
-        let exact = self.solve(&Options {
+        let options = Options {
             gradient: parameters.iter().map(|name| (*name).to_owned()).collect(),
             ..self.options.clone()
-        })?;
+        };
+        let exact = self.solve(self.program, &options)?;
         let gradient = exact.results.gradient.as_ref().ok_or("no gradient")?;
         if let Some(end) = &gradient.end {
             return Err(format!("the gradient ends: {end:?}"));
@@ -245,7 +250,7 @@ impl Compare<'_> {
         let run = |by: f64| -> Result<Results, String> {
             let mut options = self.options.clone();
             options.set.push((parameter.to_owned(), value + by));
-            Ok(self.solve(&options)?.results)
+            Ok(self.solve(self.differences_of, &options)?.results)
         };
         let four = |part: &f64| {
             let step = part * value.abs();
