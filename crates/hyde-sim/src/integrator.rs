@@ -132,11 +132,31 @@ impl<'a> Integrator<'a> {
         Moment::zero(t, self.now.y.len())
     }
 
-    /// Writes the solution at the time of `then`, within the last step.
-    pub(crate) fn solution(&mut self, then: &mut Moment) {
+    /// Writes the solution at the time of `then`, within the last step; what is not a state follows from the equations where
+    /// the method has it less exact than states.
+    pub(crate) fn solution(&mut self, consistent: &mut Consistent, then: &mut Moment) {
         let inside = then.t.to_bits() != self.now.t.to_bits();
-        let found = inside && self.solver.solution(then);
-        self.finish(found, then);
+        let found = inside.then(|| self.solver.solution(then)).flatten();
+        self.finish(found.is_some(), then);
+        let short = self.steps < SHORT_STEPS && self.solver.has_a_past();
+        let rough = match found {
+            Some(exact) => !exact || short,
+            None => !self.solver.end_is_exact(),
+        };
+        let state = self.state_mut();
+        match rough {
+            true => consistent.make_exact(state, then),
+            false => consistent.refine(state, then),
+        }
+    }
+
+    /// The same where the run is.
+    pub(crate) fn settle(&mut self, consistent: &mut Consistent) {
+        if !self.solver.end_is_exact() {
+            let mut now = self.now.clone();
+            consistent.make_exact(self.state_mut(), &mut now);
+            self.now = now;
+        }
     }
 
     /// The same, good enough to look for events.

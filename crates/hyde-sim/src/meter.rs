@@ -63,9 +63,8 @@ impl<'a> Meter<'a> {
         let mut then = integrator.room(from);
         self.between(from, to, &mut |t| {
             then.t = t;
-            integrator.solution(&mut then);
+            integrator.solution(consistent, &mut then);
             let state = integrator.state_mut();
-            consistent.refine(state, &mut then);
             state.values(Function::Outputs, then.at())
         });
     }

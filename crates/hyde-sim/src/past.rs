@@ -61,22 +61,34 @@ pub(crate) fn mark(
 
 /// Adds the last step, up to `to`, to the histories: in parts where a polynomial does not meet the quantity to a hundredth
 /// of the run's tolerance.
-pub(crate) fn record(integrator: &mut Integrator<'_>, from: f64, to: f64) {
+pub(crate) fn record(
+    integrator: &mut Integrator<'_>,
+    consistent: &mut Consistent,
+    (from, to): (f64, f64),
+) {
     if !integrator.state().delays.is_empty() && to > from {
-        record_part(integrator, from, to, 0, f64::INFINITY);
+        record_part((integrator, consistent), (from, to), 0, f64::INFINITY);
         // What lies inside this step is solved for by steps that begin where it does.
         integrator.state_mut().delays.forget(from);
     }
 }
 
-fn record_part(integrator: &mut Integrator<'_>, from: f64, to: f64, depth: usize, before: f64) {
+fn record_part(
+    (integrator, consistent): (&mut Integrator<'_>, &mut Consistent),
+    (from, to): (f64, f64),
+    depth: usize,
+    before: f64,
+) {
     // The last point is the end to the last bit.
     let at = |part: f64| to - (1.0 - part) * (to - from);
-    let values = PLACES.map(|part| now(integrator, at(part)));
+    let values = PLACES.map(|part| now(integrator, consistent, at(part)));
     let (rtol, atol) = integrator.tolerances();
     let mut error = 0.0_f64;
     for part in BETWEEN {
-        for (number, value) in now(integrator, at(part)).into_iter().enumerate() {
+        for (number, value) in now(integrator, consistent, at(part))
+            .into_iter()
+            .enumerate()
+        {
             let values = std::array::from_fn(|place| values[place][number]);
             let size = values
                 .iter()
@@ -88,17 +100,18 @@ fn record_part(integrator: &mut Integrator<'_>, from: f64, to: f64, depth: usize
     // What does not fall with the step is rounding, or jumps without an event.
     let middle = at(0.5);
     if error > 1.0 && error < 0.9 * before && depth < MAX_HALVINGS && middle > from && middle < to {
-        record_part(integrator, from, middle, depth + 1, error);
-        record_part(integrator, middle, to, depth + 1, error);
+        for half in [(from, middle), (middle, to)] {
+            record_part((integrator, consistent), half, depth + 1, error);
+        }
     } else {
         integrator.state_mut().delays.keep(from, to, &values);
     }
 }
 
 /// The quantities at a time within the last step.
-fn now(integrator: &mut Integrator<'_>, t: f64) -> Vec<f64> {
+fn now(integrator: &mut Integrator<'_>, consistent: &mut Consistent, t: f64) -> Vec<f64> {
     let mut then = integrator.room(t);
-    integrator.solution(&mut then);
+    integrator.solution(consistent, &mut then);
     let state = integrator.state_mut();
     state.values(Function::Delayed, then.at())
 }

@@ -18,7 +18,7 @@ use crate::moment::At;
 pub(crate) use factors::Factors;
 use hyde_ida::{Error, Failure, FailureKind, Statistics, System};
 use lanes::Lanes;
-use passes::{correct, inside, keep_largest, weights};
+use passes::{correct, inside, keep_largest, sum_of_squares, weights};
 use stages::Obstacle;
 use step_size::StepSize;
 use tableau::{BUBBLE, GAMMA, STAGES};
@@ -30,8 +30,9 @@ const SERVES: f64 = 1.25;
 const RUNGS: f64 = 4.0;
 /// What an obstacle other than the error makes of a step.
 const RETREAT: f64 = 0.25;
-/// A correction of the interpolant that is no more of the tolerance leaves the solution.
+/// A correction of the interpolant that is no more of the tolerance leaves the solution, and so many are made.
 const NEARLY: f64 = 0.5;
+const MOST_CORRECTIONS: usize = 4;
 /// Attempts at a step.
 const MAX_ATTEMPTS: usize = 40;
 /// The last slope: y' at the end of the step.
@@ -68,6 +69,8 @@ pub(crate) struct RungeKutta<S> {
     others: Vec<Lanes>,
     /// Whether the interpolant of the last step is as exact as its end: so it is for what is neither stiff nor algebraic.
     smooth: bool,
+    /// Whether at the end of the last step Newton's method has found all else as exactly as states.
+    exact: bool,
     /// 1 over the tolerance of each unknown; the same, and 0 where an error does not count.
     weights: Lanes,
     counted: Lanes,
@@ -118,6 +121,7 @@ impl<S: System> RungeKutta<S> {
             others: slopes.clone(),
             slopes,
             smooth: true,
+            exact: true,
             weights: Lanes::zeros(n),
             counted: Lanes::zeros(n),
             stage: Lanes::zeros(n),
@@ -144,6 +148,11 @@ impl<S: System> RungeKutta<S> {
     pub(crate) fn end(&self) -> At<'_> {
         let (t, y, yp) = (self.t, &*self.y, &*self.slopes[LAST]);
         At { t, y, yp }
+    }
+
+    /// Whether all but the states, and all rates, are as exact there as they.
+    pub(crate) fn end_is_exact(&self) -> bool {
+        self.exact
     }
 
     pub(crate) fn statistics(&self) -> Statistics {
@@ -288,62 +297,84 @@ impl<S: System> RungeKutta<S> {
         }))
     }
 
-    /// The solution at a time (in s) within the last step, as exact as at its end: the end of a shorter step where the
-    /// interpolant is not.
-    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
-        if self.smooth || !self.corrected(t, y, yp) && !self.step_to(t, y, yp) {
-            self.interpolate(t, y, yp);
-        }
+    /// The solution at a time (in s) within the last step: the end of a shorter step where the interpolant is not as exact
+    /// as the end of the step. Whether all but the states, and all rates, are as exact as they.
+    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+        self.interpolate(t, y, yp);
+        self.smooth || self.corrected(t, y, yp) || self.step_to(t, y, yp)
     }
 
-    /// The end of a step as long as to `t`. Whether there is one. The factors of the run remain as they are.
+    /// The end of a step as long as to `t`; what was there if there is none. Whether it is exact in all but the states too.
+    /// The factors of the run remain as they are.
     fn step_to(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
         let for_rows = self.for_rows.take();
         let for_rows = for_rows.map_or_else(|| self.factors.empty(), Ok);
         let Ok(mut for_rows) = for_rows else {
             return false;
         };
-        let of_run = (self.contraction.take(), self.smooth);
+        let of_run = (self.contraction.take(), self.smooth, self.exact);
         for_rows.forget();
         std::mem::swap(&mut self.factors, &mut for_rows);
         std::mem::swap(&mut self.slopes, &mut self.others);
         self.slopes[0].copy_from_slice(&self.others[0]);
-        let reached = self.attempt(t - self.from).is_ok();
+        let h = t - self.from;
+        let reached = self.attempt(h).is_ok();
         if reached {
             y.copy_from_slice(&self.stage);
             yp.copy_from_slice(&self.slopes[LAST]);
         }
+        let exact = reached && self.settled(t, h, y, yp);
         std::mem::swap(&mut self.slopes, &mut self.others);
         std::mem::swap(&mut self.factors, &mut for_rows);
         self.for_rows = Some(for_rows);
-        (self.contraction, self.smooth) = of_run;
-        reached
+        (self.contraction, self.smooth, self.exact) = of_run;
+        exact
     }
 
-    /// The interpolant, corrected once by Newton's method with the factors of the step. Whether the correction is so small
-    /// that this is the solution to the tolerance of the step.
+    /// The same values, corrected with the factors of the step. Whether that is the solution to the tolerance of the step.
     fn corrected(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
-        let Some(h) = self.factors.step_s().filter(|h| self.is_length(*h)) else {
-            return false;
-        };
-        self.interpolate(t, y, yp);
-        self.statistics.residual_evaluations += 1;
-        let evaluated = self.system.residual(t, y, yp, &mut self.correction);
-        if evaluated.is_err() {
-            return false;
-        }
-        self.factors.solve(&mut self.correction);
+        let step = self.factors.step_s().filter(|h| self.is_length(*h));
+        step.is_some_and(|h| self.settled(t, h, y, yp))
+    }
+
+    /// Corrects values and rates by Newton's method with the factors of a step of `h` s. Whether that leaves the states
+    /// where they were to the tolerance of the step, and finds all else to it; else nothing is changed.
+    fn settled(&mut self, t: f64, h: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
         self.stage.copy_from_slice(y);
         self.base.copy_from_slice(yp);
-        let square = correct(
-            (&mut self.stage, &mut self.base),
-            &self.correction,
-            (&self.weights, &self.counted),
-            1.0 / (GAMMA * h),
-        );
-        y.copy_from_slice(&self.stage);
-        yp.copy_from_slice(&self.base);
-        (square / self.count).sqrt() <= NEARLY
+        let affine = self.factors.are_of(self.system.coefficients());
+        for _ in 0..MOST_CORRECTIONS {
+            self.statistics.residual_evaluations += 1;
+            let (system, correction) = (&mut self.system, &mut self.correction);
+            let evaluated = system.residual(t, &self.stage, &self.base, correction);
+            if evaluated.is_err() {
+                return false;
+            }
+            self.factors.solve(correction);
+            let square = correct(
+                (&mut self.stage, &mut self.base),
+                correction,
+                (&self.weights, &self.counted),
+                1.0 / (GAMMA * h),
+            );
+            // What is not a number is no solution.
+            let leaves_states = (square / self.count).sqrt() <= NEARLY;
+            if !leaves_states {
+                return false;
+            }
+            if affine || self.finds_all() {
+                y.copy_from_slice(&self.stage);
+                yp.copy_from_slice(&self.base);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether the last correction was nearly none of all unknowns.
+    fn finds_all(&self) -> bool {
+        let square = sum_of_squares(&self.correction, &self.weights);
+        (square / self.weights.len() as f64).sqrt() <= NEARLY
     }
 
     /// Whether the last step is this long, in s.

@@ -223,14 +223,21 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Writes the solution at the time of `then`, inside the last step; returns false if there is none.
-    pub(crate) fn solution(&mut self, then: &mut Moment) -> bool {
+    /// Whether all but the states is as exact as they at the end of the last step.
+    pub(crate) fn end_is_exact(&self) -> bool {
         match self {
-            Self::Nothing { .. } | Self::Ida(_) => self.interpolate(then),
-            Self::RungeKutta(solver) => {
-                solver.solution(then.t, &mut then.y, &mut then.yp);
-                true
-            }
+            Self::Nothing { .. } | Self::Ida(_) => true,
+            Self::RungeKutta(solver) => solver.end_is_exact(),
+        }
+    }
+
+    /// Writes the solution at the time of `then`, inside the last step, and returns whether all but the states is as exact as
+    /// they are by the method itself; none if there is no solution.
+    pub(crate) fn solution(&mut self, then: &mut Moment) -> Option<bool> {
+        match self {
+            Self::Nothing { .. } => None,
+            Self::Ida(_) => self.interpolate(then).then_some(true),
+            Self::RungeKutta(solver) => Some(solver.solution(then.t, &mut then.y, &mut then.yp)),
         }
     }
 

@@ -95,6 +95,8 @@ impl<S: System> RungeKutta<S> {
             }
             let left = self.contraction.map_or(0.0, |rate| rate * trusted);
             if left <= MOST_LEFT {
+                let affine = self.factors.are_of(self.system.coefficients());
+                self.exact = affine || self.finds_all();
                 return Ok(());
             }
         }

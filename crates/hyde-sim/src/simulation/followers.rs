@@ -76,7 +76,7 @@ impl<'a> Followers<'a> {
             sensitivities.follow(run.integrator, to);
         }
         count_modes(run.integrator, run.results, to - from);
-        past::record(run.integrator, from, to);
+        past::record(run.integrator, run.consistent, (from, to));
     }
 
     /// The run stands at the end of a step; whether there is something to work on.

@@ -81,9 +81,8 @@ impl<'a> Rows<'a> {
                 return;
             }
             let mut then = run.integrator.room(t.min(end));
-            run.integrator.solution(&mut then);
+            run.integrator.solution(run.consistent, &mut then);
             let state = run.integrator.state_mut();
-            run.consistent.refine(state, &mut then);
             let values = self.values(state, then.at());
             if let Some(sensitivities) = sensitivities {
                 sensitivities.advance(run.integrator, then.t);

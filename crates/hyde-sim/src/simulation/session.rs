@@ -289,8 +289,6 @@ impl Simulation<'_> {
     fn look_back(&mut self, t: f64) {
         let place = &mut self.pieces.place;
         place.t = t;
-        self.integrator.solution(place);
-        let state = self.integrator.state_mut();
-        self.consistent.refine(state, place);
+        self.integrator.solution(&mut self.consistent, place);
     }
 }

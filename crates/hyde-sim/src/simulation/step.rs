@@ -141,6 +141,9 @@ impl Simulation<'_> {
         let follows = self.integrator.follows();
         let there = self.integrator.now.t >= target || same_instant(self.integrator.now.t, target);
         let works = there || !self.program.selections.is_empty();
+        if there {
+            self.integrator.settle(&mut self.consistent);
+        }
         let (followers, mut run) = self.followers();
         followers.at_end(&mut run, works);
         if self.chooses_states_anew()? {
