@@ -5,6 +5,7 @@
 
 pub(crate) mod arrays;
 pub(crate) mod bodies;
+pub(crate) mod circuits;
 mod complex_step;
 mod model;
 mod trajectories;

@@ -6,7 +6,8 @@
 //! stretch = phi - n*th[0];  … der(stretch)      der(stretch) is w - n*w[0]
 //! a.phi = n*b.phi, both differentiated          a.phi is explicit in b.phi, and der(a.phi) = n*der(b.phi)
 //! ```
-//! The last line is index reduction for constraints that can be solved for one state. What needs more is refused by
+//! The last line is index reduction for constraints that can be solved for one state; those that only several equations
+//! show together are [shown](hidden) before. What needs more is refused by
 //! [`crate::matching`] with the names of the constrained variables.
 
 use crate::alias;
@@ -24,6 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 mod chain_rule;
 mod explicit;
 mod fixed;
+mod hidden;
 mod inline;
 mod inputs;
 mod rates;
@@ -57,7 +59,7 @@ fn settle(system: &mut System) {
         let named = rates::name_derivatives(system);
         let expanded =
             whole_arrays::expand_one(system, &declared) || expand_some(system, &declared);
-        if !aliased && !named && !expanded {
+        if !aliased && !named && !expanded && !hidden::expose(system) {
             break;
         }
     }

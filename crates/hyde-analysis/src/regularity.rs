@@ -21,7 +21,9 @@ mod words;
 
 use crate::system::System;
 pub(crate) use closed::held_once_more;
+pub(crate) use elimination::{Row, combinations};
 use hyde_diag::Diagnostics;
+pub(crate) use residue::Residue;
 pub(crate) use words::noun;
 
 /// Reports what makes the model singular; whether anything does.

@@ -139,9 +139,11 @@ impl<'a> Integrator<'a> {
         let found = inside.then(|| self.solver.solution(then)).flatten();
         self.finish(found.is_some(), then);
         let short = self.steps < SHORT_STEPS && self.solver.has_a_past();
+        let state = self.state();
+        let algebraic = self.solver.has_a_past() && state.differential.contains(&false);
         let rough = match found {
-            Some(exact) => !exact || short,
-            None => !self.solver.end_is_exact(),
+            Some(exact) => !exact || short || algebraic,
+            None => !self.solver.end_is_exact() || algebraic,
         };
         let state = self.state_mut();
         match rough {

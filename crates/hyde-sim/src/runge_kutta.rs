@@ -30,8 +30,11 @@ const SERVES: f64 = 1.25;
 const RUNGS: f64 = 4.0;
 /// What an obstacle other than the error makes of a step.
 const RETREAT: f64 = 0.25;
-/// A correction of the interpolant that is no more of the tolerance leaves the solution, and so many are made.
+/// A correction of the states that is no more of the tolerance leaves the solution.
 const NEARLY: f64 = 0.5;
+/// All else is found where a correction is no more of it, of so many: what follows from a voltage by the steep line of a diode
+/// is to be exact as well.
+const FOUND: f64 = 1e-2;
 const MOST_CORRECTIONS: usize = 4;
 /// Attempts at a step.
 const MAX_ATTEMPTS: usize = 40;
@@ -301,7 +304,8 @@ impl<S: System> RungeKutta<S> {
     /// as the end of the step. Whether all but the states, and all rates, are as exact as they.
     pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
         self.interpolate(t, y, yp);
-        self.smooth || self.corrected(t, y, yp) || self.step_to(t, y, yp)
+        let good = self.smooth && !self.differential.contains(&false);
+        good || self.corrected(t, y, yp) || self.step_to(t, y, yp)
     }
 
     /// The end of a step as long as to `t`; what was there if there is none. Whether it is exact in all but the states too.
@@ -371,10 +375,10 @@ impl<S: System> RungeKutta<S> {
         false
     }
 
-    /// Whether the last correction was nearly none of all unknowns.
+    /// Whether the last correction was next to none of any unknown.
     fn finds_all(&self) -> bool {
         let square = sum_of_squares(&self.correction, &self.weights);
-        (square / self.weights.len() as f64).sqrt() <= NEARLY
+        (square / self.weights.len() as f64).sqrt() <= FOUND
     }
 
     /// Whether the last step is this long, in s.

@@ -1,6 +1,6 @@
 //! [`Model`]: the text of a random model, and what the comparisons need to know of it.
 
-use super::{arrays, bodies};
+use super::{arrays, bodies, circuits};
 use crate::linear::random as switching;
 
 /// A random model. Its experiment is called `run`.
@@ -18,12 +18,13 @@ pub struct Model {
     pub measures_work: bool,
 }
 
-/// The model of a seed: bodies and joints of the library, plain equations that switch, or arrays.
+/// The model of a seed: bodies and joints of the library, circuits, plain equations that switch, or arrays.
 #[must_use]
 pub fn random(seed: u64) -> Model {
-    match seed % 5 {
+    match seed % 6 {
         0 => switching_model(seed),
         1 => arrays::random(seed),
+        2 => circuits::random(seed),
         _ => bodies::random(seed),
     }
 }

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 /// Two ways to one result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Way {
-    /// IDA and the one-step method, each against a reference at a tight tolerance.
+    /// IDA, the one-step method and the choice between them, each against a reference at a tight tolerance.
     Methods,
     /// Machine code and the interpreter, to the last bit.
     Backends,
@@ -136,6 +136,7 @@ impl<'a> Subject<'a> {
             (Method::Ida, NEAR),
             (Method::Esdirk, LOOSE),
             (Method::Ida, LOOSE),
+            (Method::Auto, LOOSE),
         ];
         for (method, (rtol, atol, bound)) in ways {
             let other = self

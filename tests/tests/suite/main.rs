@@ -12,6 +12,7 @@ mod bouncing_ball;
 mod candidates;
 mod carried;
 mod chosen_states;
+mod circuits;
 mod clocks;
 mod closed_form;
 mod clutch;

@@ -9,6 +9,12 @@ pub(crate) type Row = BTreeMap<usize, Residue>;
 /// The rows of a basis of all combinations that give zero, each as few as the others allow: a set that depends on each
 /// other, and would not without any one of it.
 pub(crate) fn dependent_sets(rows: &[Row]) -> Vec<Vec<usize>> {
+    let found = combinations(rows).into_iter();
+    found.map(|set| set.into_keys().collect()).collect()
+}
+
+/// The same with their factors, by the numbers of the rows. The last row of each is in none of the others.
+pub(crate) fn combinations(rows: &[Row]) -> Vec<Row> {
     if eliminate(rows, false).vanished.is_empty() {
         return Vec::new();
     }
@@ -29,9 +35,6 @@ pub(crate) fn dependent_sets(rows: &[Row]) -> Vec<Vec<usize>> {
         }
     }
     found
-        .into_iter()
-        .map(|set| set.into_keys().collect())
-        .collect()
 }
 
 /// The columns whose combination gives zero: the same of the transposed matrix.
