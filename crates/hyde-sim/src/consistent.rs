@@ -27,6 +27,8 @@ const UNSOLVED: f64 = 1e6;
 /// So many small steps may follow each other where rows are not solved: before an upright slope, as of a root near 0, they
 /// grow from one to the next.
 const MAX_SMALL_STEPS: usize = 8;
+/// Corrections by the factors of an earlier point at most: then its own are cheaper.
+const MOST_BY_OLD_FACTORS: usize = 3;
 
 /// The solver of consistent values; keeps its factors from call to call.
 pub(crate) struct Consistent {
@@ -215,6 +217,51 @@ impl Consistent {
         if self.solve(state, now, false).is_err() {
             *now = before;
         }
+    }
+
+    /// The same to a part of the values, by the factors of an earlier point as long as these serve.
+    pub(crate) fn make_near(&mut self, state: &mut State<'_>, now: &mut Moment, part: f64) {
+        let before = now.clone();
+        if !self.by_old_factors(state, now, part) {
+            *now = before;
+            self.make_exact(state, now);
+        }
+    }
+
+    /// Corrects by the factors at hand. Whether what is left is no more than a part of the values.
+    fn by_old_factors(&mut self, state: &mut State<'_>, now: &mut Moment, part: f64) -> bool {
+        if self.factored.is_empty() || !state.slides.is_empty() {
+            return false;
+        }
+        let mut last: Option<f64> = None;
+        for _ in 0..MOST_BY_OLD_FACTORS {
+            if self.evaluate(state, now.at()).is_err() {
+                return false;
+            }
+            self.correction.copy_from_slice(&self.residual);
+            if let Some(solver) = &mut self.solver {
+                solver.solve(&mut self.correction);
+            }
+            let mut values = vec![0.0; self.correction.len()];
+            for (index, value) in values.iter_mut().enumerate() {
+                let solved = match state.differential[index] {
+                    true => &mut now.yp[index],
+                    false => &mut now.y[index],
+                };
+                *value = *solved;
+                *solved -= self.correction[index];
+            }
+            let size = TOLERANCE * self.size(&values);
+            let rate = last.map_or(1.0, |last| size / last);
+            if size * rate <= part {
+                return true;
+            }
+            if rate > 1.0 || !size.is_finite() {
+                return false;
+            }
+            last = Some(size);
+        }
+        false
     }
 
     fn evaluate(&mut self, state: &mut State<'_>, at: At<'_>) -> Result<(), Box<Failure>> {

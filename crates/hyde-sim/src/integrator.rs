@@ -38,6 +38,8 @@ const LEAST_RTOL: f64 = 2e-11;
 const LEAST_ATOL: f64 = 1e-2 * LEAST_RTOL;
 /// The same for algebraic variables, of the largest value they had: a force is a difference of large ones.
 const LEAST_OF_DIFFERENCES: f64 = 1e-9;
+/// Of the relative tolerance, how exact in rows all is that follows from states by the equations.
+const PART_IN_ROWS: f64 = 1e-3;
 /// So many steps after a start are short and of low order.
 const SHORT_STEPS: u32 = 16;
 
@@ -139,6 +141,7 @@ impl<'a> Integrator<'a> {
         let found = inside.then(|| self.solver.solution(then)).flatten();
         self.finish(found.is_some(), then);
         let short = self.steps < SHORT_STEPS && self.solver.has_a_past();
+        let part = PART_IN_ROWS * self.tolerances.0;
         let state = self.state();
         let algebraic = self.solver.has_a_past() && state.differential.contains(&false);
         let rough = match found {
@@ -147,7 +150,7 @@ impl<'a> Integrator<'a> {
         };
         let state = self.state_mut();
         match rough {
-            true => consistent.make_exact(state, then),
+            true => consistent.make_near(state, then, part),
             false => consistent.refine(state, then),
         }
     }

@@ -12,7 +12,7 @@ const SHIFT: f64 = 2e-5;
 const NOTHING: f64 = 1e-7;
 /// How much farther than a state a rate or a force may be: the tolerance of a step is for the states, which stiff parts
 /// multiply.
-const NO_STATE: f64 = 10.0;
+const NO_STATE: f64 = 30.0;
 
 /// How a run is made: the method, its tolerances, and where it ends, in s.
 #[derive(Clone, Copy, Debug)]
