@@ -55,7 +55,7 @@ impl Way {
 /// Tolerances of the reference, by the one-step method, which takes a step to an event anew.
 const TIGHT: (f64, f64) = (1e-10, 1e-13);
 /// Tolerances, and how far a state may be from the reference, as a part of its largest value.
-const NEAR: (f64, f64, f64) = (1e-8, 1e-11, 2e-5);
+const NEAR: (f64, f64, f64) = (1e-8, 1e-11, 5e-5);
 const LOOSE: (f64, f64, f64) = (1e-6, 1e-9, 1e-3);
 /// How far whole arrays and single elements may be apart: two runs at `TIGHT`.
 const UNROLLED: f64 = 1e-6;
