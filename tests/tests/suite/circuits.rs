@@ -1,6 +1,8 @@
 //! Circuits whose equations hide something: a loop of capacitors, and a small current behind a steep diode.
 
+use crate::command::{report, write};
 use crate::models::{close, solve};
+use std::fmt::Write as _;
 
 /// Voltages of the capacitors a and b of the loop by Kirchhoff's laws and the classical Runge-Kutta method, `t` s behind the
 /// step of the source.
@@ -53,4 +55,25 @@ fn a_small_current_beside_a_large_one_is_as_exact_as_the_voltages() {
             close(*i, v / 490.0, 1e-5);
         }
     }
+}
+
+#[test]
+fn a_sum_of_shared_sums_is_looked_at_once() {
+    // 2^40 ways lead to x.
+    let mut model = "package shared;\nimport SI.*;\n".to_owned();
+    for k in 0..40 {
+        let inner = match k {
+            0 => "x".to_owned(),
+            _ => format!("f{}(x)", k - 1),
+        };
+        let body = format!("  input Real x;\n  output Real y = {inner} + {inner};");
+        writeln!(model, "function f{k}\n{body}\nend f{k};").unwrap();
+    }
+    model.push_str(
+        "model M\n  Real x(start = 1, fixed = true), w;\nequation\n  der(x) = -w/1 [s];\n  w + f39(x) = 2*x;\nend M;\n\
+         experiment run of M\n  solve esdirk stop 1e-13 [s];\nend run;\n",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    write(&folder.path().join("shared.hyde"), &model);
+    report(folder.path(), &["run", "shared.hyde"]);
 }

@@ -12,7 +12,11 @@ use super::differentiated;
 use crate::regularity::{Residue, Row, combinations};
 use crate::system::{Cell, System};
 use hyde_ir::{BinaryOp, Expr, ExprArena, ExprId, Memo, Range, UnaryOp};
+use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
+
+/// Larger factors are not counted exactly.
+const LARGEST: f64 = 1e15;
 
 /// The factors of the variables of a sum.
 type Factors = BTreeMap<Cell, f64>;
@@ -51,38 +55,39 @@ fn sum(system: &System, number: usize) -> Option<Factors> {
     if equation.range != Range::SCALAR || equation.constraint {
         return None;
     }
+    let exprs = &system.flat.exprs;
+    let mut weights = FxHashMap::default();
     let mut factors = Factors::new();
-    let mut pending = vec![(equation.lhs, 1.0), (equation.rhs, -1.0)];
-    while let Some((id, factor)) = pending.pop() {
-        let exprs = &system.flat.exprs;
-        match exprs[id] {
-            Expr::Var(var, index) if system.is_continuous(var) => {
-                *factors.entry(System::cell(var, index)?).or_default() += factor;
-            }
-            Expr::Unary(UnaryOp::Neg, a) => pending.push((a, -factor)),
-            Expr::Binary(BinaryOp::Add, a, b) => pending.extend([(a, factor), (b, factor)]),
-            Expr::Binary(BinaryOp::Sub, a, b) => pending.extend([(a, factor), (b, -factor)]),
-            Expr::Var(..)
-            | Expr::Der(..)
-            | Expr::Const(_)
-            | Expr::Time
-            | Expr::Counter
-            | Expr::Param(..)
-            | Expr::Pre(..)
-            | Expr::Relation(_)
-            | Expr::InMode(..)
-            | Expr::Unary(..)
-            | Expr::Binary(..)
-            | Expr::If(..)
-            | Expr::NoEvent(_) => {
-                if exprs.any(id, |leaf| is_variable(system, leaf)) {
-                    return None;
-                }
-            }
+    add(&mut weights, equation.lhs, 1.0);
+    add(&mut weights, equation.rhs, -1.0);
+    // Each sum before its parts, each once: parts are shared, and the ways to one may be without number.
+    for id in exprs.below(&[equation.lhs, equation.rhs]).into_iter().rev() {
+        let Some(&weight) = weights.get(&id) else {
+            continue;
+        };
+        if let Expr::Binary(BinaryOp::Add, a, b) = exprs[id] {
+            add(&mut weights, a, weight);
+            add(&mut weights, b, weight);
+        } else if let Expr::Binary(BinaryOp::Sub, a, b) = exprs[id] {
+            add(&mut weights, a, weight);
+            add(&mut weights, b, -weight);
+        } else if let Expr::Unary(UnaryOp::Neg, a) = exprs[id] {
+            add(&mut weights, a, -weight);
+        } else if let Expr::Var(var, index) = exprs[id]
+            && system.is_continuous(var)
+        {
+            *factors.entry(System::cell(var, index)?).or_default() += weight;
+        } else if exprs.any(id, |leaf| is_variable(system, leaf)) {
+            return None;
         }
     }
     factors.retain(|_, factor| *factor != 0.0);
-    Some(factors)
+    let exact = factors.values().all(|factor| factor.abs() < LARGEST);
+    exact.then_some(factors)
+}
+
+fn add(weights: &mut FxHashMap<ExprId, f64>, part: ExprId, weight: f64) {
+    *weights.entry(part).or_default() += weight;
 }
 
 fn is_variable(system: &System, leaf: Expr) -> bool {
