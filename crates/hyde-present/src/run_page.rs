@@ -121,11 +121,11 @@ pub fn page(project: &Project, compiled: &Compiled, run: &Run, made: &str) -> Pa
     let solver = vec![
         (
             "method".to_owned(),
-            match (statistics.method, statistics.left_ida_s) {
+            match (statistics.method, statistics.left_ida) {
                 (Method::Ida | Method::Auto, None) => ida,
-                (Method::Ida | Method::Auto, Some(t)) => {
-                    let t = significant(t, 4);
-                    format!("{ida}; from {t} s {ESDIRK}: half of the steps failed the error test")
+                (Method::Ida | Method::Auto, Some(left)) => {
+                    let at = significant(left.at_s, 4);
+                    format!("{ida}; from {at} s on {ESDIRK}: {}", left.why)
                 }
                 (Method::Esdirk, _) => ESDIRK.to_owned(),
             },

@@ -43,12 +43,9 @@ pub fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -
         counted(statistics.ticks, "tick"),
         counted(statistics.restarts, "restart")
     );
-    if let Some(t) = statistics.left_ida_s {
-        let _ = writeln!(
-            out,
-            "  esdirk from {} s on: half of the steps of ida failed the error test",
-            significant(t, 4)
-        );
+    if let Some(left) = statistics.left_ida {
+        let at = significant(left.at_s, 4);
+        let _ = writeln!(out, "  esdirk from {at} s on: {}", left.why);
     }
     let found = run.results.yielded.iter().map(|y| y.name.as_str());
     let found: BTreeSet<&str> = found.collect();
@@ -272,7 +269,7 @@ pub fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         },
         "statistics": {
             "steps": statistics.steps,
-            "esdirk_from_s": statistics.left_ida_s,
+            "esdirk_from_s": statistics.left_ida.map(|left| left.at_s),
             "residual_evaluations": statistics.residual_evaluations,
             "jacobian_evaluations": statistics.jacobian_evaluations,
             "nonlinear_iterations": statistics.nonlinear_iterations,

@@ -6,6 +6,7 @@ use crate::consistent::Consistent;
 use crate::failed_equation::{with_equation, with_values};
 use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
+use crate::results::{LeftIda, WhyLeft};
 use crate::setup::Setup;
 use crate::solver::{FirstStep, Solver};
 use crate::state::State;
@@ -24,8 +25,7 @@ pub(crate) struct Integrator<'a> {
     /// The largest value of each unknown so far, and those that the tolerances were made with.
     largest: Vec<f64>,
     allowed: Vec<f64>,
-    /// When the one-step method took over from IDA, in s.
-    left_ida_s: Option<f64>,
+    left_ida: Option<LeftIda>,
 }
 
 /// The solver bounds the error of a step; over a long smooth stretch the errors of many steps add up, an oscillation
@@ -62,7 +62,7 @@ impl<'a> Integrator<'a> {
             part: 1,
             largest: vec![0.0; n],
             allowed: vec![0.0; n],
-            left_ida_s: None,
+            left_ida: None,
         })
     }
 
@@ -80,12 +80,14 @@ impl<'a> Integrator<'a> {
     }
 
     /// One step, never past `stop`. Returns where the step began.
-    pub(crate) fn step(&mut self, stop: f64) -> Result<f64, Box<Failure>> {
+    pub(crate) fn step(
+        &mut self,
+        stop: f64,
+        consistent: &mut Consistent,
+    ) -> Result<f64, Box<Failure>> {
         let before = self.now.t;
-        match self.solver.leaves_ida(self.now.at()) {
-            Ok(true) => self.left_ida_s = Some(before),
-            Ok(false) => {}
-            Err(error) => return Err(self.failure(&error)),
+        if self.solver.creeps() {
+            self.leave_ida(WhyLeft::Creeps, consistent)?;
         }
         self.steps = self.steps.saturating_add(1);
         let part = self.steps / SMOOTH_AFTER;
@@ -100,11 +102,36 @@ impl<'a> Integrator<'a> {
             self.set_tolerances(self.part)?;
         }
         if let Err(error) = self.solver.step(&mut self.now, stop) {
-            return Err(self.failure(&error));
+            let failure = self.failure(&error);
+            let left = is_stuck(&error) && self.leave_ida(WhyLeft::Stuck, consistent)?;
+            if !left || self.solver.step(&mut self.now, stop).is_err() {
+                return Err(failure);
+            }
         }
         self.apply_pins();
         self.note_largest();
         Ok(before)
+    }
+
+    /// Goes over from IDA to the one-step method, from values that are consistent: IDA's are as far from it as its iteration
+    /// was stopped early. Whether it can.
+    fn leave_ida(
+        &mut self,
+        why: WhyLeft,
+        consistent: &mut Consistent,
+    ) -> Result<bool, Box<Failure>> {
+        let mut now = self.now.clone();
+        consistent.make_exact(self.state_mut(), &mut now);
+        let left = self.solver.leave_ida(now.at());
+        let left = left.map_err(|error| self.failure(&error))?;
+        if left {
+            self.now = now;
+            self.left_ida = Some(LeftIda {
+                at_s: self.now.t,
+                why,
+            });
+        }
+        Ok(left)
     }
 
     /// The same values again that were the largest before.
@@ -215,9 +242,9 @@ impl<'a> Integrator<'a> {
         &self.largest
     }
 
-    /// When the one-step method took over from IDA, in s.
-    pub(crate) fn left_ida_s(&self) -> Option<f64> {
-        self.left_ida_s
+    /// When and why the one-step method took over from IDA.
+    pub(crate) fn left_ida(&self) -> Option<LeftIda> {
+        self.left_ida
     }
 
     pub(crate) fn statistics(&self) -> hyde_ida::Statistics {
@@ -339,4 +366,10 @@ impl<'a> Integrator<'a> {
         }
         failure
     }
+}
+
+/// Whether no step is short enough for the solver: not for its iteration, or not for its error test.
+fn is_stuck(error: &Error) -> bool {
+    use hyde_ida::FailureKind::{Convergence, ErrorTest};
+    matches!(error, Error::Failed(failed) if matches!(failed.kind, Convergence | ErrorTest))
 }

@@ -66,8 +66,8 @@ pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
 pub use reached::Reached;
 pub use results::{
-    Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
-    Statistics, Yielded,
+    Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, LeftIda, Reduced, Results,
+    Statistics, WhyLeft, Yielded,
 };
 pub use session::{Session, Variation};
 pub use setup::Setup;

@@ -4,6 +4,7 @@ use hyde_diag::Origin;
 use hyde_program::{Firmness, Method};
 use hyde_signal::Series;
 use std::borrow::Cow;
+use std::fmt;
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,13 +46,40 @@ pub struct Event {
     pub origin: Origin,
 }
 
+/// Where `esdirk` took over from `ida`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftIda {
+    /// The time in the run, in s.
+    pub at_s: f64,
+    /// The reason.
+    pub why: WhyLeft,
+}
+
+/// Why `ida` could not go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyLeft {
+    /// Half of its steps failed the error test.
+    Creeps,
+    /// No step was short enough for its iteration or its error test.
+    Stuck,
+}
+
+impl fmt::Display for WhyLeft {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Creeps => "half of the steps of ida failed the error test",
+            Self::Stuck => "no step was short enough for ida",
+        })
+    }
+}
+
 /// What the solver did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// The method that was taken.
     pub method: Method,
-    /// When `esdirk` took over, in s, because half of the steps of `ida` failed the error test.
-    pub left_ida_s: Option<f64>,
+    /// When and why `esdirk` took over from `ida`.
+    pub left_ida: Option<LeftIda>,
     /// Accepted steps.
     pub steps: u64,
     /// Evaluations of the residual by the solver.

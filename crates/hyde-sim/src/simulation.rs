@@ -291,7 +291,7 @@ impl<'a> Simulation<'a> {
     /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next.
     fn no_way(&mut self, kind: FailureKind, target: f64) -> Box<Failure> {
         let before = self.integrator.now.yp.clone();
-        if let Err(failure) = self.integrator.step(target) {
+        if let Err(failure) = self.integrator.step(target, &mut self.consistent) {
             return failure;
         }
         let now = &self.integrator.now.yp;
@@ -348,7 +348,7 @@ impl<'a> Simulation<'a> {
         let solver = self.integrator.statistics();
         let statistics = &mut self.results.statistics;
         statistics.method = method(self.program, self.setup.method);
-        statistics.left_ida_s = self.integrator.left_ida_s();
+        statistics.left_ida = self.integrator.left_ida();
         statistics.steps = solver.steps;
         statistics.residual_evaluations = solver.residual_evaluations;
         statistics.jacobian_evaluations = solver.jacobian_evaluations;

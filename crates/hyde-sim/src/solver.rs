@@ -169,15 +169,23 @@ impl<'a> Solver<'a> {
         matches!(self, Self::Ida(_))
     }
 
-    /// Goes over to the one-step method where IDA creeps; whether it did. `at` is where IDA stands.
-    pub(crate) fn leaves_ida(&mut self, at: At<'_>) -> Result<bool, Error> {
+    /// Whether IDA creeps, and has taken a step whose length the next could have; asked once before each step.
+    pub(crate) fn creeps(&mut self) -> bool {
+        match self {
+            Self::Ida(multistep) => {
+                let begins = multistep.ida.last_step_s() <= 0.0;
+                !begins && multistep.creeping.seen(&multistep.ida)
+            }
+            Self::Nothing { .. } | Self::RungeKutta(_) => false,
+        }
+    }
+
+    /// Goes over from IDA, which stands at the time of `at`, to the one-step method; whether it can.
+    pub(crate) fn leave_ida(&mut self, at: At<'_>) -> Result<bool, Error> {
         let Self::Ida(multistep) = self else {
             return Ok(false);
         };
-        let selected = !multistep.ida.system().program.selections.is_empty();
-        // Right after a restart there is no step whose length the next could have.
-        let begins = multistep.ida.last_step_s() <= 0.0;
-        if selected || begins || !multistep.creeping.seen(&multistep.ida) {
+        if !multistep.ida.system().program.selections.is_empty() {
             return Ok(false);
         }
         let factors = Factors::new(multistep.pattern.clone(), false)?;

@@ -102,7 +102,7 @@ impl Simulation<'_> {
         }
         let reached = &self.setup.reached;
         reached.set(self.integrator.now.t, self.setup.stop_s);
-        let from = self.integrator.step(target)?;
+        let from = self.integrator.step(target, &mut self.consistent)?;
         if let Some(kind) = self.hurry.no_way(self.integrator.now.t, self.setup) {
             return Err(self.no_way(kind, target));
         }
