@@ -334,7 +334,7 @@ impl Consistent {
                 && (after <= before
                     || after <= rounding
                     || halving == MAX_HALVINGS
-                    || self.size(&old) <= ROUNDING
+                    || is_rounding(&old, &self.correction)
                     || self.next_size(&old) <= (1.0 - 0.5 * factor) * self.size(&old))
             {
                 whole = halving == 0;
@@ -389,6 +389,11 @@ fn size(values: &[f64], corrections: &[f64]) -> f64 {
         let tolerance = TOLERANCE * (value.abs() + 1e-3 * largest) + LEAST_TOLERANCE;
         most.max(correction.abs() / tolerance)
     })
+}
+
+/// Whether corrections of these values are so small that they may be rounding.
+pub(crate) fn is_rounding(values: &[f64], corrections: &[f64]) -> bool {
+    size(values, corrections) <= ROUNDING
 }
 
 fn largest(values: &[f64]) -> usize {

@@ -4,7 +4,7 @@
 //! the states' y' are unknown together: F = 0, each fixed start value, each initial equation, by a damped Newton method.
 //! So are delayed values, which are at the start what they are the delay of.
 
-use crate::consistent::Consistent;
+use crate::consistent::{Consistent, is_rounding};
 use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
 use crate::release::{self, by_parameter};
@@ -142,6 +142,10 @@ pub(crate) fn solve(
         let (old, before) = (now.clone(), norm(&r));
         let old_past = past.clone();
         let old_found: Vec<f64> = found.iter().map(|&place| state.p[place]).collect();
+        let rates = states.iter().map(|&i| old.yp[i]);
+        let values: Vec<f64> = old.y.iter().copied().chain(rates).collect();
+        let values = [&values[..], &old_found, &old_past].concat();
+        let rounding = is_rounding(&values, &step);
         let mut factor = 1.0;
         let mut whole = false;
         for halving in 0..=MAX_HALVINGS {
@@ -159,16 +163,14 @@ pub(crate) fn solve(
             state.set_parameters(&each.collect::<Vec<_>>());
             r = residual(state, now.at(), &past);
             let after = norm(&r);
-            if after.is_finite() && (after <= before || halving == MAX_HALVINGS || after < 1e-12) {
+            if after.is_finite() && (after <= before || halving == MAX_HALVINGS || rounding) {
                 whole = halving == 0;
                 break;
             }
             factor *= 0.5;
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let most = size_of(&old.y)
-            .max(size_of(&old.yp))
-            .max(size_of(&old_found));
+        let most = size_of(&values);
         if whole && size_of(&step) <= 1e-11 * (1.0 + most) {
             consistent.solve(state, now, true)?;
             return check(state, now.at(), round);

@@ -8,7 +8,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
 use crate::results::{LeftIda, WhyLeft};
 use crate::setup::Setup;
-use crate::solver::{FirstStep, Solver};
+use crate::solver::{Begun, FirstStep, Solver};
 use crate::state::State;
 use hyde_ida::Error;
 
@@ -87,7 +87,7 @@ impl<'a> Integrator<'a> {
     ) -> Result<f64, Box<Failure>> {
         let before = self.now.t;
         if self.solver.creeps() {
-            self.leave_ida(WhyLeft::Creeps, consistent)?;
+            self.begin_anew(WhyLeft::Creeps, consistent)?;
         }
         self.steps = self.steps.saturating_add(1);
         let part = self.steps / SMOOTH_AFTER;
@@ -103,8 +103,8 @@ impl<'a> Integrator<'a> {
         }
         if let Err(error) = self.solver.step(&mut self.now, stop) {
             let failure = self.failure(&error);
-            let left = is_stuck(&error) && self.leave_ida(WhyLeft::Stuck, consistent)?;
-            if !left || self.solver.step(&mut self.now, stop).is_err() {
+            let anew = is_stuck(&error) && self.begin_anew(WhyLeft::Stuck, consistent)?;
+            if !anew || self.solver.step(&mut self.now, stop).is_err() {
                 return Err(failure);
             }
         }
@@ -113,25 +113,29 @@ impl<'a> Integrator<'a> {
         Ok(before)
     }
 
-    /// Goes over from IDA to the one-step method, from values that are consistent: IDA's are as far from it as its iteration
-    /// was stopped early. Whether it can.
-    fn leave_ida(
+    /// Begins anew by the one-step method from values and rates that are consistent: those that the iterations of a step
+    /// leave are so within its tolerance, which may be far from it where an exponential is steep. Whether it can.
+    fn begin_anew(
         &mut self,
         why: WhyLeft,
         consistent: &mut Consistent,
     ) -> Result<bool, Box<Failure>> {
         let mut now = self.now.clone();
         consistent.make_exact(self.state_mut(), &mut now);
-        let left = self.solver.leave_ida(now.at());
-        let left = left.map_err(|error| self.failure(&error))?;
-        if left {
-            self.now = now;
-            self.left_ida = Some(LeftIda {
-                at_s: self.now.t,
-                why,
-            });
+        if let Some((rates, _)) = consistent.flow(self.state_mut(), now.at()) {
+            now.yp.copy_from_slice(&rates);
         }
-        Ok(left)
+        let begun = self.solver.begin_anew(now.at());
+        let begun = begun.map_err(|error| self.failure(&error))?;
+        if begun == Begun::No {
+            return Ok(false);
+        }
+        self.now = now;
+        if begun == Begun::WithoutIda {
+            let at_s = self.now.t;
+            self.left_ida = Some(LeftIda { at_s, why });
+        }
+        Ok(true)
     }
 
     /// The same values again that were the largest before.

@@ -20,6 +20,16 @@ pub(crate) enum Solver<'a> {
     RungeKutta(Box<RungeKutta<State<'a>>>),
 }
 
+/// How a solver has begun anew.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Begun {
+    No,
+    /// By the one-step method, as before.
+    Again,
+    /// By the one-step method instead of IDA.
+    WithoutIda,
+}
+
 /// What bounds the first step, in s.
 pub(crate) struct FirstStep {
     /// A step of order 1 is as exact as the tolerance asks, and a small part of what is left of the run.
@@ -180,20 +190,25 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Goes over from IDA, which stands at the time of `at`, to the one-step method; whether it can.
-    pub(crate) fn leave_ida(&mut self, at: At<'_>) -> Result<bool, Error> {
-        let Self::Ida(multistep) = self else {
-            return Ok(false);
+    /// Begins anew at `at`, where it stands, by the one-step method if it can.
+    pub(crate) fn begin_anew(&mut self, at: At<'_>) -> Result<Begun, Error> {
+        let multistep = match self {
+            Self::Nothing { .. } => return Ok(Begun::No),
+            Self::RungeKutta(solver) => {
+                solver.restart(at, f64::INFINITY, f64::INFINITY);
+                return Ok(Begun::Again);
+            }
+            Self::Ida(multistep) => multistep,
         };
         if !multistep.ida.system().program.selections.is_empty() {
-            return Ok(false);
+            return Ok(Begun::No);
         }
         let factors = Factors::new(multistep.pattern.clone(), false)?;
         replace_with::replace_with_or_abort(self, |solver| match solver {
             Self::Ida(multistep) => Self::RungeKutta(Box::new(multistep.one_step(factors, at))),
             other @ (Self::Nothing { .. } | Self::RungeKutta(_)) => other,
         });
-        Ok(true)
+        Ok(Begun::WithoutIda)
     }
 
     /// One step, never past `stop`; `now` moves to its end.

@@ -6,11 +6,13 @@ use std::ops::{Add, Neg, Sub};
 /// An exact rational exponent such as `2`, `-1` or `1/2`.
 ///
 /// It is kept in parts of 5040, the least number that all of 1 to 10 and 16 divide: four square roots on end, and
-/// every root up to the tenth, are exact. The largest exponent is about 400 000; sums saturate there.
+/// every root up to the tenth, are exact. The largest exponent is about 400 000, the least as far below 0; sums saturate there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Exponent(i32);
 
 const PARTS: i32 = 5040;
+/// So that what is above and below a line of a fraction saturates alike.
+const LARGEST: i32 = i32::MAX;
 
 impl Exponent {
     /// The exponent 0.
@@ -34,7 +36,7 @@ impl Exponent {
         if d == 0 || parts % d != 0 {
             return None;
         }
-        i32::try_from(parts / d).ok().map(Self)
+        Self::of_parts(parts / d)
     }
 
     /// The exponent that a number literal means: `0.5` is 1/2, `0.3333333333333333` is 1/3.
@@ -45,7 +47,7 @@ impl Exponent {
         let parts = value * f64::from(PARTS);
         let whole = parts.round();
         let near = (parts - whole).abs() <= 1e-12 * parts.abs();
-        (near && whole.abs() < f64::from(i32::MAX)).then_some(Self(whole as i32))
+        (near && whole.abs() < f64::from(LARGEST)).then_some(Self(whole as i32))
     }
 
     /// The product, as in `(m^a)^b`; none if it is not a whole number of parts or too large.
@@ -55,7 +57,7 @@ impl Exponent {
         if parts % i64::from(PARTS) != 0 {
             return None;
         }
-        i32::try_from(parts / i64::from(PARTS)).ok().map(Self)
+        Self::of_parts(parts / i64::from(PARTS))
     }
 
     /// The quotient, as in the root of `m^a` that is raised to b; none if it is not a whole number of parts or too large.
@@ -66,7 +68,13 @@ impl Exponent {
         if divisor == 0 || parts % divisor != 0 {
             return None;
         }
-        i32::try_from(parts / divisor).ok().map(Self)
+        Self::of_parts(parts / divisor)
+    }
+
+    /// None if it is too large.
+    fn of_parts(parts: i64) -> Option<Self> {
+        let parts = i32::try_from(parts).ok()?;
+        (parts >= -LARGEST).then_some(Self(parts))
     }
 
     /// Whether it is 0.
@@ -101,21 +109,21 @@ impl Exponent {
 impl Add for Exponent {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self(self.0.saturating_add(other.0))
+        Self(self.0.saturating_add(other.0).max(-LARGEST))
     }
 }
 
 impl Sub for Exponent {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self(self.0.saturating_sub(other.0))
+        Self(self.0.saturating_sub(other.0).max(-LARGEST))
     }
 }
 
 impl Neg for Exponent {
     type Output = Self;
     fn neg(self) -> Self {
-        Self(self.0.saturating_neg())
+        Self(-self.0)
     }
 }
 
@@ -163,6 +171,13 @@ mod tests {
         assert_eq!(sixteenth.times(Exponent::HALF), None);
         assert_eq!(Exponent::ratio(1, 11), None);
         assert_eq!(Exponent::ratio(1, 0), None);
+    }
+
+    #[test]
+    fn sums_saturate_alike_on_both_sides() {
+        let large = Exponent::ratio(400_000, 1).unwrap();
+        assert_eq!(-(large + large), Exponent::ZERO - large - large);
+        assert_eq!(Exponent::ratio(i32::MIN, PARTS), None);
     }
 
     #[test]

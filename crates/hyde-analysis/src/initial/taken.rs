@@ -71,7 +71,7 @@ impl Free {
 }
 
 /// The numbers of the free states that constraints between states take, and initial equations, each of those it reads itself or
-/// through definitions.
+/// through what defines other variables.
 pub(super) fn take(
     dae: &Dae,
     equations: &[(Range, ExprId, Origin)],
@@ -107,18 +107,22 @@ pub(super) fn take(
         .collect()
 }
 
-/// What defines each variable.
+/// What defines each variable: its definitions, and the equations of an algebraic unknown.
 fn definitions(dae: &Dae) -> BTreeMap<VarId, Vec<ExprId>> {
     let mut definitions: BTreeMap<VarId, Vec<ExprId>> = BTreeMap::new();
-    for definition in &dae.definitions {
-        let own = definitions.entry(definition.var).or_default();
-        own.push(definition.value);
+    let explicit = dae.definitions.iter().map(|own| (own.var, own.value));
+    let implicit = dae.residuals.iter().filter_map(|residual| {
+        let unknown = &dae.unknowns[residual.unknown];
+        (!unknown.differential).then_some((unknown.var, residual.value))
+    });
+    for (var, value) in explicit.chain(implicit) {
+        definitions.entry(var).or_default().push(value);
     }
     definitions
 }
 
 /// The numbers of the free states that each value of an initial equation reads: `x[i] = 1` reads one each. What it reads through
-/// definitions all values read.
+/// other variables all values read.
 fn read(
     dae: &Dae,
     definitions: &BTreeMap<VarId, Vec<ExprId>>,

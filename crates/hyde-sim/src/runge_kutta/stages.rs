@@ -7,7 +7,11 @@
 //! K[0] is y' where the step begins. All stages share one matrix, `dF/dy + 1/(h*gamma) dF/dy'`: it is factored when the
 //! step changes, and when the iteration contracts slowly. A linear system is solved by the first iteration, so the
 //! contraction measured last decides whether one is enough. The last stage is iterated twice, which measures it; but for an
-//! affine system it is what it was where the run started.
+//! affine system it is what it was where the run started. A first correction is one of all unknowns, a second one of those
+//! that follow slowly, such as the current of a diode whose slope has changed since the factorization: their ratio says
+//! nothing of these where the second is not small itself, so that the last stage is iterated once more. The corrections of
+//! all unknowns count, whether their errors do or not: a short step would find the states whatever the voltage of the diode
+//! is, and the next one would begin with that voltage.
 
 use super::RungeKutta;
 use super::passes::{Along, are_finite, correct, estimate, predict, sum_of_squares};
@@ -88,12 +92,12 @@ impl<S: System> RungeKutta<S> {
     fn stages(&mut self, h: f64) -> Result<(), Obstacle> {
         // Once more if the contraction turns out to be less than the one that earlier stages trusted.
         for _ in 0..2 {
-            let mut trusted = 0.0_f64;
+            let mut last = 0.0_f64;
             for i in 1..STAGES {
                 self.predict(i, h);
-                trusted = trusted.max(self.iterate(i, h)?);
+                last = last.max(self.iterate(i, h)?);
             }
-            let left = self.contraction.map_or(0.0, |rate| rate * trusted);
+            let left = self.contraction.map_or(0.0, |rate| rate * last);
             if left <= MOST_LEFT {
                 let affine = self.factors.are_of(self.system.coefficients());
                 self.exact = affine || self.finds_all();
@@ -115,7 +119,7 @@ impl<S: System> RungeKutta<S> {
         predict(stage, slope, self.before.whole(), earlier, &along);
     }
 
-    /// Newton's method for a stage. Returns the size of the only correction, or 0 if there were more.
+    /// Newton's method for a stage. Returns the size of the last correction, or 0 if that is rounding.
     fn iterate(&mut self, i: usize, h: f64) -> Result<f64, Obstacle> {
         let (t, cj) = (self.from + C[i] * h, 1.0 / (GAMMA * h));
         let mut last = f64::INFINITY;
@@ -134,7 +138,7 @@ impl<S: System> RungeKutta<S> {
             let square = correct(
                 (&mut self.stage, slope),
                 &self.correction,
-                (&self.weights, &self.counted),
+                (&self.weights, &self.weights),
                 cj,
             );
             let size = (square / self.count).sqrt();
@@ -153,13 +157,14 @@ impl<S: System> RungeKutta<S> {
                     return Ok(0.0);
                 }
             }
-            let measures =
-                i + 1 == STAGES && iteration == 0 && self.system.coefficients().is_none();
+            let measures = i + 1 == STAGES
+                && (iteration == 0 || iteration == 1 && size > MOST_LEFT)
+                && self.system.coefficients().is_none();
             let converged = self
                 .contraction
                 .is_some_and(|rate| rate < TOO_SLOW && rate * size <= LEFT * (1.0 - rate));
             if size <= ROUNDING || converged && !measures {
-                return Ok(if iteration == 0 { size } else { 0.0 });
+                return Ok(size);
             }
             last = size;
         }
