@@ -231,11 +231,15 @@ impl<S: System> RungeKutta<S> {
     }
 
     /// Takes the last step once more, to end at `end` (in s) inside it or before; the next one is as long as it would
-    /// have been.
-    pub(crate) fn step_again(&mut self, end: f64) -> Result<(), Error> {
-        self.take(end - self.from, end)?;
+    /// have been. Whether there is such a step: else the last one is taken as it was.
+    pub(crate) fn step_again(&mut self, end: f64) -> Result<bool, Error> {
+        let whole = self.t;
+        let shorter = self.take(end - self.from, end).is_ok();
+        if !shorter {
+            self.take(whole - self.from, whole)?;
+        }
         self.statistics.steps -= 1;
-        Ok(())
+        Ok(shorter)
     }
 
     /// Takes a step of this length in s, or as long as it can be. Returns the length of the next.

@@ -288,12 +288,11 @@ impl<'a> Simulation<'a> {
         self.integrator.restart(&step)
     }
 
-    /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next.
+    /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next, if there is a
+    /// next one.
     fn no_way(&mut self, kind: FailureKind, target: f64) -> Box<Failure> {
         let before = self.integrator.now.yp.clone();
-        if let Err(failure) = self.integrator.step(target, &mut self.consistent) {
-            return failure;
-        }
+        let next = self.integrator.step(target, &mut self.consistent);
         let now = &self.integrator.now.yp;
         let jumps = now
             .iter()
@@ -301,7 +300,7 @@ impl<'a> Simulation<'a> {
             .map(|(now, before)| (now - before).abs());
         let most = jumps.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         let failure = Failure::new(kind, self.integrator.now.t);
-        match most {
+        match most.filter(|_| next.is_ok()) {
             Some((row, _)) => {
                 let failure = failure.at_row(self.program, row, &self.integrator.now.y);
                 self.integrator.with_equation(failure, row)

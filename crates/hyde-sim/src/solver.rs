@@ -224,14 +224,14 @@ impl<'a> Solver<'a> {
         Ok(())
     }
 
-    /// Takes the last step once more, to end at `end`, where `now` moves. Whether the method can.
+    /// Takes the last step once more, to end at `end`, where `now` moves. Whether the method can; else `now` stays.
     pub(crate) fn step_again(&mut self, now: &mut Moment, end: f64) -> Result<bool, Error> {
         let Self::RungeKutta(solver) = self else {
             return Ok(false);
         };
-        solver.step_again(end)?;
+        let shorter = solver.step_again(end)?;
         self.end(now);
-        Ok(true)
+        Ok(shorter)
     }
 
     fn end(&self, now: &mut Moment) {
