@@ -174,6 +174,8 @@ impl<S: System> RungeKutta<S> {
         self.t = t;
         self.y.copy_from_slice(y);
         self.slopes[LAST].copy_from_slice(yp);
+        // What was 0 until now and is no longer has a size.
+        keep_largest(&mut self.largest, &self.y);
         let first_s = self.step_size.first(by_curvature_s);
         self.next_step_s = self.next_step_s.min(first_s).min(longest_s);
         // The factors may serve on: where only a held value has changed they do. The contraction tells of the others.

@@ -159,6 +159,27 @@ fn a_coil_that_saturates_starts_with_its_current() {
 }
 
 #[test]
+fn a_voltage_that_comes_at_once_has_a_size_at_once() {
+    for near in [185.504367, 187.35941067, 189.21445434, 185.689871367] {
+        let options = Options {
+            set: vec![("R".to_owned(), near)],
+            ..Options::default()
+        };
+        let run = solve_with("circuits", "divided", &options);
+        let parallel = 1.0 / (1.0 / near + 1.0 / (56.871388 + 316.891734));
+        let node = 47.258257 * parallel / (9.12344 + parallel);
+        let (time, v) = (run.time(), run.column("near.v"));
+        for (&t, &v) in time.iter().zip(v.iter()) {
+            let exact = if t < 0.05 { 0.0 } else { node };
+            assert!(
+                (v - exact).abs() <= 1e-10 || (t - 0.05).abs() < 1e-9,
+                "{v} at {t}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_sum_of_shared_sums_is_looked_at_once() {
     // 2^40 ways lead to x.
     let mut model = "package shared;\nimport SI.*;\n".to_owned();
