@@ -29,11 +29,7 @@ pub(crate) fn first_step(
     let flow = consistent.flow(integrator.state_mut(), now.at());
     let (mut by_curvature_s, mut longest_s) = (1e-2 * span, f64::INFINITY);
     if let Some((dy, dyp)) = flow {
-        for (index, slope) in dy.iter().enumerate() {
-            if !integrator.state().differential[index] && slope.is_finite() {
-                integrator.now.yp[index] = *slope;
-            }
-        }
+        integrator.set_slopes(&dy);
         // The first step is of order 1: its error is half the square of the step times the second derivative.
         let mut square = 0.0;
         for (value, rate) in now.y.iter().zip(&dyp) {

@@ -142,10 +142,9 @@ pub(crate) fn solve(
         let (old, before) = (now.clone(), norm(&r));
         let old_past = past.clone();
         let old_found: Vec<f64> = found.iter().map(|&place| state.p[place]).collect();
-        let rates = states.iter().map(|&i| old.yp[i]);
-        let values: Vec<f64> = old.y.iter().copied().chain(rates).collect();
-        let values = [&values[..], &old_found, &old_past].concat();
-        let rounding = is_rounding(&values, &step);
+        let rates: Vec<f64> = states.iter().map(|&i| old.yp[i]).collect();
+        let solved = [&old.y[..], &rates, &old_found, &old_past].concat();
+        let rounding = is_rounding(&solved, &step);
         let mut factor = 1.0;
         let mut whole = false;
         for halving in 0..=MAX_HALVINGS {
@@ -170,7 +169,7 @@ pub(crate) fn solve(
             factor *= 0.5;
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let most = size_of(&values);
+        let most = size_of(&solved);
         if whole && size_of(&step) <= 1e-11 * (1.0 + most) {
             consistent.solve(state, now, true)?;
             return check(state, now.at(), round);

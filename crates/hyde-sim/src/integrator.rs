@@ -25,6 +25,7 @@ pub(crate) struct Integrator<'a> {
     /// The largest value of each unknown so far, and those that the tolerances were made with.
     largest: Vec<f64>,
     allowed: Vec<f64>,
+    /// When and why the one-step method took over from IDA.
     left_ida: Option<LeftIda>,
 }
 
@@ -123,7 +124,7 @@ impl<'a> Integrator<'a> {
         let mut now = self.now.clone();
         consistent.make_exact(self.state_mut(), &mut now);
         if let Some((rates, _)) = consistent.flow(self.state_mut(), now.at()) {
-            now.yp.copy_from_slice(&rates);
+            now.set_slopes(&self.state().differential, &rates);
         }
         let begun = self.solver.begin_anew(now.at());
         let begun = begun.map_err(|error| self.failure(&error))?;
@@ -136,6 +137,12 @@ impl<'a> Integrator<'a> {
             self.left_ida = Some(LeftIda { at_s, why });
         }
         Ok(true)
+    }
+
+    /// Gives the algebraic variables their slopes along the flow.
+    pub(crate) fn set_slopes(&mut self, flow: &[f64]) {
+        let differential = &self.solver.state().differential;
+        self.now.set_slopes(differential, flow);
     }
 
     /// The same values again that were the largest before.

@@ -33,6 +33,15 @@ impl Moment {
         self.yp.copy_from_slice(at.yp);
     }
 
+    /// Gives the algebraic variables their slopes along the flow, where these have a value.
+    pub(crate) fn set_slopes(&mut self, differential: &[bool], flow: &[f64]) {
+        for ((rate, &state), &slope) in self.yp.iter_mut().zip(differential).zip(flow) {
+            if !state && slope.is_finite() {
+                *rate = slope;
+            }
+        }
+    }
+
     /// To read it.
     pub(crate) fn at(&self) -> At<'_> {
         let Self { t, y, yp } = self;

@@ -230,7 +230,9 @@ impl<'a> Solver<'a> {
             return Ok(false);
         };
         let shorter = solver.step_again(end)?;
-        self.end(now);
+        if shorter {
+            self.end(now);
+        }
         Ok(shorter)
     }
 
