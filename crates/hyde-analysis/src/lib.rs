@@ -18,7 +18,7 @@
 //! 10. `initial`: the initial system;
 //! 11. `outputs`: what is reported;
 //! 12. `partials`: derivatives of every function; through arrays that read the same scalars by arrays of derivatives
-//!     (`shapes`);
+//!     (`shapes`); on the way how fast sines of the time turn (`turning`);
 //! 13. `hoist`: what depends on parameters alone is computed once a run.
 
 mod alias;
@@ -52,6 +52,7 @@ mod split;
 mod state_choices;
 mod still;
 mod system;
+mod turning;
 mod unroll;
 mod whole_arrays;
 

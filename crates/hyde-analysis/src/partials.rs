@@ -9,6 +9,7 @@
 //! ```
 
 use crate::shapes::{define_slopes, is_leaf, through_shapes};
+use crate::turning;
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
 use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -23,7 +24,12 @@ pub(crate) fn differentiate(dae: &mut Dae) {
     };
     for function in Function::ALL {
         let mut list = Vec::new();
-        for (range, row, value) in expanded_rows(dae, function, &definitions) {
+        let rows = expanded_rows(dae, function, &definitions);
+        if function == Function::Residual {
+            let values: Vec<ExprId> = rows.iter().map(|(_, _, value)| *value).collect();
+            turning::find(dae, &values);
+        }
+        for (range, row, value) in rows {
             let gradient = dae.exprs.gradient(value, is_leaf);
             for (wrt, derivative) in through_shapes(dae, gradient, &slopes) {
                 // Nothing asks for the residual's derivative by the time.

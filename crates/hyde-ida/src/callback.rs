@@ -13,6 +13,7 @@ use sundials_sys as sys;
 
 use crate::convergence::Convergence;
 use crate::operations::{error_weights, find_not_finite};
+use crate::steep::Steep;
 use crate::vector::{values, values_mut};
 use crate::{Recoverable, SparseSolver, System};
 
@@ -36,6 +37,8 @@ pub(crate) struct Bridge<S> {
     pub(crate) jacobian_evaluations: u64,
     pub(crate) root_evaluations: u64,
     pub(crate) convergence: Convergence,
+    /// There where the equations are steep.
+    pub(crate) steep: Option<Steep>,
     panic: Option<Box<dyn Any + Send>>,
 }
 
@@ -68,6 +71,7 @@ impl<S> Bridge<S> {
             jacobian_evaluations: 0,
             root_evaluations: 0,
             convergence: Convergence::new(),
+            steep: None,
             panic: None,
         }
     }
@@ -85,16 +89,6 @@ impl<S> BridgeBox<S> {
 
     pub(crate) fn user_data(&self) -> *mut c_void {
         self.0.as_ptr().cast()
-    }
-
-    /// Where the test of convergence keeps what it knows of the steps of a solver.
-    pub(crate) fn convergence(&self, ida: *mut c_void) -> *mut c_void {
-        // SAFETY: the box is ours, and IDA does not run.
-        unsafe {
-            let own = &raw mut (*self.0.as_ptr()).convergence;
-            (*own).of(ida);
-            own.cast()
-        }
     }
 
     pub(crate) fn get(&self) -> &Bridge<S> {
@@ -148,6 +142,9 @@ pub(crate) unsafe extern "C" fn residual<S: System>(
     };
     guarded(bridge, |bridge| {
         bridge.residual_evaluations += 1;
+        if let Some(steep) = &mut bridge.steep {
+            steep.at(t, y, yp);
+        }
         let evaluated = bridge.system.residual(t, y, yp, out);
         match outcome(evaluated, out) {
             Ok(()) => {
@@ -233,6 +230,41 @@ pub(crate) unsafe extern "C" fn weights<S: System>(
     guarded(bridge, |bridge| {
         error_weights(bridge.rtol, &bridge.atol, y, weights);
         DONE
+    })
+}
+
+/// `SUNNonlinSolConvTestFn`: whether the last correction is one.
+pub(crate) unsafe extern "C" fn converged<S: System>(
+    newton: sys::SUNNonlinearSolver,
+    _correction: sys::N_Vector,
+    last: sys::N_Vector,
+    tolerance: f64,
+    weights: sys::N_Vector,
+    user_data: *mut c_void,
+) -> c_int {
+    // SAFETY: as in `residual`; the solvers and the vectors are valid.
+    let (bridge, norm, last, weights, iteration, cj) = unsafe {
+        let bridge = reach::<S>(user_data);
+        let (mut iteration, mut cj) = (0, 0.0);
+        sys::SUNNonlinSolGetCurIter(newton, &raw mut iteration);
+        sys::IDAGetCurrentCj(bridge.convergence.ida(), &raw mut cj);
+        let norm = sys::N_VWrmsNorm(last, weights);
+        (bridge, norm, values(last), values(weights), iteration, cj)
+    };
+    guarded(bridge, |bridge| {
+        let convergence = &mut bridge.convergence;
+        let Some(steep) = &mut bridge.steep else {
+            return convergence.test(iteration, norm, cj, tolerance);
+        };
+        let code = convergence.test_each(iteration, (last, norm), weights, cj, tolerance);
+        if iteration == 0 && convergence.is_old() {
+            bridge.jacobian_evaluations += 1;
+            let old = (bridge.linear.pattern(), bridge.jacobian.as_slice());
+            if !steep.serves(&mut bridge.system, old, cj, weights) {
+                return sys::SUN_NLS_CONV_RECVR;
+            }
+        }
+        code
     })
 }
 

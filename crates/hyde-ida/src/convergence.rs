@@ -7,6 +7,10 @@
 //! grow from step to step without ever being iterated twice. Here the estimate grows with the steps since it was seen, so
 //! that it is seen again before it can be wrong by much.
 //!
+//! The norm of the corrections falls as that of most unknowns. One that the Jacobian does not know, as the voltage of a diode
+//! that has just ceased to conduct, may fall by a hundredth from one correction to the next and is lost in the norm of the
+//! first: where equations are steep each unknown has a rate of its own, and its error is estimated by it.
+//!
 //! IDA gives up where the second correction is not smaller than the first. A force that bends with an acceleration,
 //! `F = F1*tanh(der(v)/a1)`, is met by a Jacobian of its place in three: the first mends the acceleration.
 
@@ -26,6 +30,8 @@ const SECOND: f64 = 4.0;
 const SLOW_RATE: f64 = 0.3;
 /// A first correction so far below the tolerance needs no second.
 const NOTHING: f64 = 1e-8;
+/// An unknown whose correction did not fall is as far from its value as so many corrections.
+const LARGEST_PART: f64 = 20.0;
 /// What an estimate grows by with each step, and what it is at least.
 const AGE: f64 = 1.5;
 /// A new Jacobian says little of how it will serve later; an old one that serves may do so longer.
@@ -47,6 +53,8 @@ pub(crate) struct Convergence {
     renewed: bool,
     /// Whether it is that of this step.
     current: bool,
+    /// The last correction.
+    before: Vec<f64>,
 }
 
 impl Convergence {
@@ -59,6 +67,7 @@ impl Convergence {
             cj: 0.0,
             renewed: true,
             current: true,
+            before: Vec::new(),
         }
     }
 
@@ -72,8 +81,18 @@ impl Convergence {
         self.renewed = true;
     }
 
+    /// The solver that the steps are of.
+    pub(crate) fn ida(&self) -> *mut c_void {
+        self.ida
+    }
+
+    /// Whether the Jacobian is that of an earlier step.
+    pub(crate) fn is_old(&self) -> bool {
+        !self.current
+    }
+
     /// Whether a correction of this norm, the `iteration`th from 0 on, is the last; one of IDA's codes.
-    fn test(&mut self, iteration: c_int, norm: f64, cj: f64, tolerance: f64) -> c_int {
+    pub(crate) fn test(&mut self, iteration: c_int, norm: f64, cj: f64, tolerance: f64) -> c_int {
         if iteration == 0 {
             let same = cj.to_bits() == self.cj.to_bits();
             self.current = std::mem::take(&mut self.renewed);
@@ -111,27 +130,45 @@ impl Convergence {
             false => sys::SUN_NLS_CONTINUE,
         }
     }
+
+    /// The same, if the corrections of each unknown fall as their norm does.
+    pub(crate) fn test_each(
+        &mut self,
+        iteration: c_int,
+        (correction, norm): (&[f64], f64),
+        weights: &[f64],
+        cj: f64,
+        tolerance: f64,
+    ) -> c_int {
+        let code = self.test(iteration, norm, cj, tolerance);
+        if code == 0 && (iteration == 0 || self.slowest(correction, weights) <= tolerance) {
+            return 0;
+        }
+        if code == 0 || code == sys::SUN_NLS_CONTINUE {
+            self.before.clear();
+            self.before.extend_from_slice(correction);
+            return sys::SUN_NLS_CONTINUE;
+        }
+        code
+    }
+
+    /// The norm of the errors that unknowns are left with by the rates of their own corrections.
+    fn slowest(&self, correction: &[f64], weights: &[f64]) -> f64 {
+        let pairs = self.before.iter().zip(correction).zip(weights);
+        let squares =
+            pairs.map(|((before, last), weight)| (to_come(*before, *last) * weight).powi(2));
+        let count = correction.len().max(1) as f64;
+        (squares.sum::<f64>() / count).sqrt()
+    }
 }
 
-/// `SUNNonlinSolConvTestFn`.
-pub(crate) unsafe extern "C" fn test(
-    newton: sys::SUNNonlinearSolver,
-    _correction: sys::N_Vector,
-    last: sys::N_Vector,
-    tolerance: f64,
-    weights: sys::N_Vector,
-    own: *mut c_void,
-) -> c_int {
-    // SAFETY: `own` is the `Convergence` in the bridge of this solver, which nothing refers to while IDA runs but the
-    // callbacks, of which IDA calls one at a time; the solver, its memory and the vectors are valid.
-    unsafe {
-        let own = &mut *own.cast::<Convergence>();
-        let norm = sys::N_VWrmsNorm(last, weights);
-        let (mut iteration, mut cj) = (0, 0.0);
-        sys::SUNNonlinSolGetCurIter(newton, &raw mut iteration);
-        sys::IDAGetCurrentCj(own.ida, &raw mut cj);
-        own.test(iteration, norm, cj, tolerance)
-    }
+/// The sum of the corrections of an unknown that are still to come if they fall as its last two did, `last*r/(1 - r)` with
+/// r = last/before.
+#[must_use]
+pub fn to_come(before: f64, last: f64) -> f64 {
+    let (before, last) = (before.abs(), last.abs());
+    let fell = (before - last).max(0.0);
+    (last * last / fell).min(LARGEST_PART * last)
 }
 
 #[cfg(test)]
@@ -160,6 +197,20 @@ mod tests {
         };
         assert_eq!(believed(), 19);
         assert_eq!(own.test(1, 0.5, 5.0, 0.33), sys::SUN_NLS_CONV_RECVR);
+    }
+
+    #[test]
+    fn an_unknown_that_falls_slowly_is_not_lost_in_the_norm() {
+        let mut own = Convergence::new();
+        let mut look = |iteration, correction: [f64; 2]| {
+            let norm = (0.5 * (correction[0].powi(2) + correction[1].powi(2))).sqrt();
+            own.test_each(iteration, (&correction, norm), &[1.0; 2], 5.0, 0.33)
+        };
+        assert_eq!(look(0, [1000.0, 16.0]), sys::SUN_NLS_CONTINUE);
+        assert_eq!(look(1, [1e-3, 15.9]), sys::SUN_NLS_CONTINUE);
+        // If it falls, it is as near as the rest.
+        assert_eq!(look(0, [1000.0, 16.0]), sys::SUN_NLS_CONTINUE);
+        assert_eq!(look(1, [1e-3, 0.1]), 0);
     }
 
     #[test]

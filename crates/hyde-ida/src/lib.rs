@@ -65,9 +65,11 @@ mod settings;
 mod solver;
 mod start;
 mod statistics;
+mod steep;
 mod system;
 mod vector;
 
+pub use convergence::to_come;
 pub use error::{Error, Failure, FailureKind};
 pub use linear::{LinearMethod, SetAside, Singular, SparseSolver};
 pub use options::Options;

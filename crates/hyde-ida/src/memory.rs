@@ -7,7 +7,6 @@ use sundials_sys as sys;
 
 use crate::callback::{self, BridgeBox};
 use crate::context::Context;
-use crate::convergence;
 use crate::failure::accept;
 use crate::vector::Vector;
 use crate::{Error, Options, System};
@@ -69,8 +68,8 @@ impl Memory {
                     .as_ptr();
                 accept(sys::IDASetNonlinearSolver(ida, memory.newton))?;
                 // IDA has put its own test in.
-                let known = bridge.convergence(ida);
-                let test: sys::SUNNonlinSolConvTestFn = Some(convergence::test);
+                let known = bridge.user_data();
+                let test: sys::SUNNonlinSolConvTestFn = Some(callback::converged::<S>);
                 accept(sys::SUNNonlinSolSetConvTestFn(memory.newton, test, known))?;
             }
             accept(sys::IDASetSuppressAlg(

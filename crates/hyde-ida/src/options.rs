@@ -30,6 +30,9 @@ pub struct Options {
     /// Looks at the rate of Newton's method again after some steps, where IDA believes the last one that it saw as long as
     /// steps have one size. Without it an algebraic variable may drift off unseen.
     pub watch_convergence: bool,
+    /// For equations with exponentials that grow: compares an old Jacobian with that of each step, by one evaluation, and
+    /// estimates the error of each unknown by the rate of its own corrections.
+    pub steep: bool,
 }
 
 impl Options {
@@ -48,6 +51,7 @@ impl Options {
             max_steps_per_solve: None,
             linear_method: LinearMethod::Auto,
             watch_convergence: true,
+            steep: false,
         }
     }
 

@@ -9,6 +9,7 @@ use crate::context::Context;
 use crate::memory::Memory;
 use crate::options::check_finite;
 use crate::start::{Start, check_point};
+use crate::steep::Steep;
 use crate::vector::Vector;
 use crate::{Error, Options, Pattern, SparseSolver, Statistics, System};
 
@@ -83,7 +84,7 @@ impl<S: System> Ida<S> {
 
         let context = Context::new()?;
         let linear = SparseSolver::new(pattern, options.linear_method)?;
-        let bridge = BridgeBox::new(Bridge::new(
+        let mut bridge = BridgeBox::new(Bridge::new(
             system,
             linear,
             options.rtol,
@@ -95,7 +96,10 @@ impl<S: System> Ida<S> {
         );
         let scratch = Vector::new(n, &context)?;
         let memory = Memory::new(&context, &bridge, &options, t0, &y, &yp)?;
-        let n_roots = bridge.get().n_roots;
+        let known = bridge.get_mut();
+        known.convergence.of(memory.ida());
+        known.steep = options.steep.then(Steep::default);
+        let n_roots = known.n_roots;
         let mut solver = Self {
             memory,
             y,

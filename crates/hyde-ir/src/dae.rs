@@ -101,6 +101,12 @@ pub struct Dae {
     pub outputs: Vec<Output>,
     /// Derivatives of the functions by unknowns, derivatives of unknowns and time.
     pub partials: Vec<(Function, Vec<Partial>)>,
+    /// How fast the arguments of sines turn that the time and parameters determine, where these rates are constant; rad/s.
+    pub turning: Vec<ExprId>,
+    /// Whether the residual has an exponential of unknowns that grows.
+    pub exponential: bool,
+    /// Whether the residual reads the time, a record column or a delayed value.
+    pub timed: bool,
     /// What the experiment adds.
     pub experiment: Experiment,
     /// Length of the solver's vector.

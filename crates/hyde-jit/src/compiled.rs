@@ -350,6 +350,7 @@ impl Compiled {
             Constant::TimeEvent(relation) => {
                 dae.relations[hyde_ir::RelationId::from_index(relation)].time_event?
             }
+            Constant::Turning(number) => *dae.turning.get(number)?,
             Constant::Start => experiment.start?,
             Constant::Stop => experiment.stop?,
             Constant::Every => experiment.every?,

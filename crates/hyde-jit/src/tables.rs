@@ -68,6 +68,9 @@ pub(crate) fn program(kernels: Compiled) -> Program {
         clock_order: dae.tick_order.iter().map(|clock| clock.index()).collect(),
         holds: dae.holds.clone(),
         delays: delays(dae),
+        turning: dae.turning.len(),
+        exponential: dae.exponential,
+        timed: dae.timed,
         foreign: dae.foreign.iter().map(|part| foreign(dae, part)).collect(),
         initial: dae
             .initial

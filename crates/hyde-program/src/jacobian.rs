@@ -25,6 +25,8 @@ pub struct Jacobian {
     runs: Vec<(usize, usize, bool)>,
     /// Entry that each value of the kernel is added to.
     positions: Vec<u32>,
+    /// Row and column of each value of the kernel.
+    cells: Vec<(u32, u32)>,
 }
 
 impl Jacobian {
@@ -66,12 +68,15 @@ impl Jacobian {
                 _ => runs.push((number, 1, entry.by_derivative)),
             }
         }
+        let to_u32 = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+        let cell = |entry: &JacobianEntry| (to_u32(entry.row), to_u32(entry.column));
         Self {
             column_starts,
             rows,
             columns,
             runs,
             positions,
+            cells: entries.iter().map(cell).collect(),
         }
     }
 
@@ -131,10 +136,8 @@ impl Jacobian {
         for &(first, len, by_derivative) in &self.runs {
             let vector = if by_derivative { by_rate } else { by_value };
             let run = first..first + len;
-            for (&position, &value) in self.positions[run.clone()].iter().zip(&values[run]) {
-                let position = position as usize;
-                let row = usize::try_from(self.rows[position]).unwrap_or(0);
-                give(row, value * vector[self.columns[position] as usize]);
+            for (&(row, column), &value) in self.cells[run.clone()].iter().zip(&values[run]) {
+                give(row as usize, value * vector[column as usize]);
             }
         }
     }

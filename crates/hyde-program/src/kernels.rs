@@ -69,6 +69,8 @@ pub enum Constant {
     Lateness(usize),
     /// Instant of a relation that is scheduled, in s.
     TimeEvent(usize),
+    /// How fast the argument of a sine of the time turns, by its number, in rad/s.
+    Turning(usize),
     /// Begin of the run in s.
     Start,
     /// End of the run in s.

@@ -214,6 +214,12 @@ pub struct Program {
     pub holds: Vec<Hold>,
     /// The delayed values, each on its own.
     pub delays: Vec<Delay>,
+    /// Number of sines of the time whose rates are known ([`crate::Constant::Turning`]).
+    pub turning: usize,
+    /// Whether the residual has an exponential of unknowns that grows.
+    pub exponential: bool,
+    /// Whether the residual reads the time, a record column or a delayed value.
+    pub timed: bool,
     /// Conditions at the start.
     pub initial: Vec<InitialCondition>,
     /// What is known of the derivatives, once asked for.
@@ -229,6 +235,13 @@ pub struct Program {
 }
 
 impl Program {
+    /// Whether sources that turn may switch something on and off by an exponential, as a rectifier does that takes its current
+    /// in pulses: a method that evaluates the ends of its steps alone may pass over one.
+    #[must_use]
+    pub fn may_pulse(&self) -> bool {
+        self.exponential && self.turning > 0
+    }
+
     /// The derivatives of a function, in the order its kernel writes them.
     #[must_use]
     pub fn partials(&self, function: Function) -> &[PartialEntry] {

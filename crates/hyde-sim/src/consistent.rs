@@ -8,9 +8,10 @@
 use crate::failed_equation::with_equation;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
+use crate::norms::{largest_correction, largest_of, largest_part, norm};
 use crate::singular;
 use crate::state::State;
-use hyde_ida::{LinearMethod, Pattern, Singular, SparseSolver, System};
+use hyde_ida::{LinearMethod, Pattern, Singular, SparseSolver, System, to_come};
 use hyde_program::Function;
 
 /// Newton iterations at most; halvings of a step at most.
@@ -40,6 +41,9 @@ pub(crate) struct Consistent {
     coefficients: Option<u64>,
     residual: Vec<f64>,
     correction: Vec<f64>,
+    /// What the unknowns were before a step, and what the terms of rows amount to.
+    old: Vec<f64>,
+    terms: Vec<f64>,
 }
 
 impl Consistent {
@@ -58,6 +62,8 @@ impl Consistent {
             coefficients: None,
             residual: vec![0.0; n],
             correction: vec![0.0; n],
+            old: Vec::with_capacity(n),
+            terms: vec![0.0; n],
         }
     }
 
@@ -71,7 +77,7 @@ impl Consistent {
         if self.solver.is_none() {
             return Ok(());
         }
-        let start = now.clone();
+        let start = at_start.then(|| now.clone());
         let Err(failure) = self.newton(state, now, at_start) else {
             return Ok(());
         };
@@ -79,7 +85,7 @@ impl Consistent {
             &failure.kind,
             FailureKind::Inconsistent { singular, .. } if !singular.is_empty()
         );
-        if at_start && singular {
+        if let (Some(start), true) = (start, singular) {
             // A product of unknowns that both start at 0, such as resistance and current, says nothing there: look from
             // elsewhere once.
             now.clone_from(&start);
@@ -228,12 +234,16 @@ impl Consistent {
         }
     }
 
-    /// Corrects by the factors at hand. Whether what is left is no more than a part of the values.
+    /// Corrects by the factors at hand. Whether what is left is no more than a part of the values: by those of here the first
+    /// correction is all, by others each unknown tells with its second what is still to come. A first that is small says
+    /// nothing: beside a diode that conducted when the factors were made, volts are a correction of nanovolts.
     fn by_old_factors(&mut self, state: &mut State<'_>, now: &mut Moment, part: f64) -> bool {
         if self.factored.is_empty() || !state.slides.is_empty() {
             return false;
         }
-        let mut last: Option<f64> = None;
+        let coefficients = self.coefficients;
+        let are_of_here = coefficients.is_some() && state.coefficients_at(now.at()) == coefficients;
+        let mut last: Option<Vec<f64>> = None;
         for _ in 0..MOST_BY_OLD_FACTORS {
             if self.evaluate(state, now.at()).is_err() {
                 return false;
@@ -251,15 +261,19 @@ impl Consistent {
                 *value = *solved;
                 *solved -= self.correction[index];
             }
-            let size = TOLERANCE * self.size(&values);
-            let rate = last.map_or(1.0, |last| size / last);
-            if size * rate <= part {
+            let pairs = self.correction.iter().enumerate();
+            let left: Option<Vec<f64>> = match &last {
+                None => are_of_here.then(|| self.correction.clone()),
+                Some(last) => Some(pairs.map(|(i, own)| to_come(last[i], *own)).collect()),
+            };
+            let near = |left: Vec<f64>| {
+                let finite = left.iter().all(|own| own.is_finite());
+                finite && TOLERANCE * size(&values, &left) <= part
+            };
+            if left.is_some_and(near) {
                 return true;
             }
-            if rate > 1.0 || !size.is_finite() {
-                return false;
-            }
-            last = Some(size);
+            last = Some(self.correction.clone());
         }
         false
     }
@@ -308,15 +322,16 @@ impl Consistent {
     /// terms leave more by rounding than other rows have left to correct. Returns its size over the tolerance; of a halved
     /// one infinity.
     fn take_step(&mut self, state: &mut State<'_>, now: &mut Moment) -> Result<f64, Box<Failure>> {
-        let norm = |residual: &[f64]| residual.iter().map(|r| r * r).sum::<f64>().sqrt();
         let before = norm(&self.residual);
         let mut factor = 1.0;
         let mut whole = false;
-        let solved = |i: usize| match state.differential[i] {
-            true => now.yp[i],
-            false => now.y[i],
-        };
-        let old: Vec<f64> = (0..now.y.len()).map(solved).collect();
+        let mut old = std::mem::take(&mut self.old);
+        old.clear();
+        let pairs = now.y.iter().zip(&now.yp).zip(&state.differential);
+        old.extend(pairs.map(|((y, yp), differential)| match differential {
+            true => *yp,
+            false => *y,
+        }));
         for halving in 0..=MAX_HALVINGS {
             for (index, &value) in old.iter().enumerate() {
                 let new = value - factor * self.correction[index];
@@ -345,23 +360,23 @@ impl Consistent {
             }
             factor *= 0.5;
         }
-        Ok(if whole {
-            self.size(&old)
-        } else {
-            f64::INFINITY
-        })
+        let size = match whole {
+            true => self.size(&old),
+            false => f64::INFINITY,
+        };
+        self.old = old;
+        Ok(size)
     }
 
     /// What a row leaves, over what its terms amount to: the most of all rows. The derivatives are those of the last
     /// factorisation.
-    fn left_over_terms(&self, state: &State<'_>, at: At<'_>) -> f64 {
-        let mut terms = vec![0.0; self.residual.len()];
+    fn left_over_terms(&mut self, state: &State<'_>, at: At<'_>) -> f64 {
+        self.terms.iter_mut().for_each(|terms| *terms = 0.0);
+        let terms = &mut self.terms;
         let add = |row: usize, term: f64| terms[row] += term.abs();
         let jacobian = state.program.jacobian();
         jacobian.products(state.partials.values(), (at.y, at.yp), add);
-        let rows = self.residual.iter().zip(terms);
-        rows.filter(|(left, _)| left.abs() > 0.0)
-            .fold(0.0, |most: f64, (left, terms)| most.max(left.abs() / terms))
+        largest_part(&self.residual, &self.terms)
     }
 
     /// The size of the correction that the residual asks for by the factors at hand.
@@ -381,14 +396,8 @@ impl Consistent {
 
 /// The largest correction over its tolerance.
 fn size(values: &[f64], corrections: &[f64]) -> f64 {
-    let largest = values
-        .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
-    let pairs = values.iter().zip(corrections);
-    pairs.fold(0.0_f64, |most, (value, correction)| {
-        let tolerance = TOLERANCE * (value.abs() + 1e-3 * largest) + LEAST_TOLERANCE;
-        most.max(correction.abs() / tolerance)
-    })
+    let beside = 1e-3 * largest_of(values);
+    largest_correction(corrections, values, (TOLERANCE, beside, LEAST_TOLERANCE))
 }
 
 /// Whether corrections of these values are so small that they may be rounding.

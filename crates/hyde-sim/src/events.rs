@@ -192,10 +192,16 @@ impl Instant<'_, '_> {
         let before = self.state.z[..program.relations.len()].to_vec();
         let mut found = self.truths_once(scheduled, located)?;
         for _ in 0..MAX_NESTED {
+            let mut turned = false;
             for (number, relation) in program.relations.iter().enumerate() {
                 if relation.used != RelationUse::Equation {
-                    self.state.z[number] = f64::from(u8::from(found.truths[number]));
+                    let truth = f64::from(u8::from(found.truths[number]));
+                    turned |= truth.to_bits() != self.state.z[number].to_bits();
+                    self.state.z[number] = truth;
                 }
+            }
+            if !turned {
+                break;
             }
             let roots = self.state.values(Function::Roots, self.now.at());
             let same = roots.iter().zip(&found.roots);

@@ -37,6 +37,7 @@ mod known_start;
 mod lobatto;
 mod meter;
 mod moment;
+mod norms;
 mod operating_point;
 mod past;
 mod reached;

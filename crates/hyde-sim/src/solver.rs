@@ -7,7 +7,7 @@ use crate::runge_kutta::{Factors, RungeKutta};
 use crate::setup::Setup;
 use crate::state::State;
 use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, Statistics};
-use hyde_program::{Method, Program, Relation, RelationUse, Target};
+use hyde_program::{Constant, Method, Program, Relation, RelationUse, Target};
 
 /// A solver that owns the state.
 pub(crate) enum Solver<'a> {
@@ -66,9 +66,9 @@ const SMALL: usize = 16;
 
 /// The method for a program: where something may happen at any moment, a one-step method, which starts anew at no cost;
 /// where all is smooth, IDA, unless the equations are affine and one iteration solves a stage (a shaft of 100 cells takes
-/// 0.7 times the time of IDA). IDA too where something is struck, a `when` sets a state: a bounce may be lower than the
-/// tolerance, and the steps that IDA begins with are as short. States that are chosen anew need slopes of them all, which a
-/// Runge-Kutta method has not.
+/// 0.7 times the time of IDA), or steep as the law of a diode, whose pulses the stages see. IDA too where something is
+/// struck, a `when` sets a state: a bounce may be lower than the tolerance, and the steps that IDA begins with are as short.
+/// States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
 pub(crate) fn method(program: &Program, asked: Method) -> Method {
     let one_step = match asked {
         Method::Ida => false,
@@ -79,13 +79,41 @@ pub(crate) fn method(program: &Program, asked: Method) -> Method {
                 && targets.any(|target| matches!(target, Target::State(_)));
             let changes = searched(program).next().is_some();
             let short = program.affine || program.n_unknowns <= SMALL;
-            !program.clocks.is_empty() || !strikes && (changes || short)
+            !program.clocks.is_empty() || !strikes && (changes || short || program.exponential)
         }
     };
     match one_step && program.selections.is_empty() {
         true => Method::Esdirk,
         false => Method::Ida,
     }
+}
+
+/// The least number of steps in a period of a source: of IDA, which looks at the ends of its steps alone, and of the
+/// one-step method, which evaluates six points of each. A run that resolves the source takes more anyway.
+const STEPS_OF_IDA: f64 = 20.0;
+const STEPS_OF_ESDIRK: f64 = 4.0;
+/// More steps in a run than these are not asked for by a source alone.
+const STEPS_OF_A_RUN: f64 = 1e6;
+
+/// The longest step that does not pass over a part of a period of a sine of the time. A largest step that the user asks for
+/// stands instead.
+fn longest_in_a_period(program: &Program, setup: &Setup<'_>, method: Method) -> f64 {
+    if setup.max_step_s.is_finite() {
+        return f64::INFINITY;
+    }
+    let rate = |number| {
+        program
+            .kernels
+            .constant(Constant::Turning(number), &setup.parameters)
+    };
+    let rates = (0..program.turning).filter_map(rate).map(f64::abs);
+    let fastest = rates.fold(0.0, f64::max);
+    let shortest = (setup.stop_s - setup.start_s) / STEPS_OF_A_RUN;
+    let steps = match method {
+        Method::Esdirk => STEPS_OF_ESDIRK,
+        Method::Ida | Method::Auto => STEPS_OF_IDA,
+    };
+    (std::f64::consts::TAU / (steps * fastest)).max(shortest)
 }
 
 /// The relations that may change at a moment that is not known before.
@@ -124,9 +152,12 @@ impl<'a> Solver<'a> {
             jacobian.rows.clone(),
         );
         let pattern = pattern.map_err(|error| failed(Error::from(error)))?;
-        let max_step_s = setup.max_step_s.min(state.inputs.max_step_s()).min(stride);
+        let method = method(program, setup.method);
+        let turns_s = longest_in_a_period(program, setup, method);
+        let max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
+        let max_step_s = max_step_s.min(stride).min(turns_s);
         let atol = vec![setup.atol; program.n_unknowns];
-        if method(program, setup.method) == Method::Esdirk {
+        if method == Method::Esdirk {
             let ticks = !program.clocks.is_empty();
             let factors = Factors::new(pattern, ticks).map_err(failed)?;
             let states = state.differential.clone();
@@ -145,6 +176,7 @@ impl<'a> Solver<'a> {
         options.suppress_algebraic = states_alone;
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
+        options.steep = program.exponential;
         let ida = Ida::new(state, pattern.clone(), options, at.t, at.y, at.yp).map_err(failed)?;
         Ok(Self::Ida(Box::new(Multistep {
             ida,

@@ -106,6 +106,9 @@ impl<'a> State<'a> {
     /// The derivative of a function by the time alone, by a difference: the time, and record columns and delayed values that
     /// move with it, have no other.
     pub(crate) fn by_time(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
+        if function == Function::Residual && !self.program.timed && self.slides.is_empty() {
+            return vec![0.0; self.program.rows(function)];
+        }
         let step = self.inputs.difference_s(at.t);
         let later = self.values(function, at.later(step));
         let now = self.values(function, at);

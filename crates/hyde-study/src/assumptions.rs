@@ -3,13 +3,39 @@
 use crate::Project;
 use crate::run_failure::instant;
 use hyde_experiment::{Run, extent, is_over_frequency};
-use hyde_program::Program;
+use hyde_program::{Constant, Method, Program};
 use hyde_signal::Table;
+use hyde_units::significant;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// All of it, record by record, then where the run begins.
 pub fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<String> {
-    all(project, program, &run.start, run.stop_s)
+    let mut all = all(project, program, &run.start, run.stop_s);
+    all.extend(of_method(program, run));
+    all
+}
+
+/// Steps in a period of a source that leave no pulse out.
+const STEPS_OF_PULSES: f64 = 200.0;
+
+/// What a run by IDA may have passed over, unless its steps were bounded.
+fn of_method(program: &Program, run: &Run) -> Option<String> {
+    let statistics = &run.results.statistics;
+    let by_ida = statistics.method == Method::Ida && statistics.left_ida.is_none();
+    let constant = |which| program.kernels.constant(which, &run.parameters);
+    if !by_ida || !program.may_pulse() || constant(Constant::MaxStep).is_some() {
+        return None;
+    }
+    let rates = (0..program.turning).filter_map(|number| constant(Constant::Turning(number)));
+    let fastest = rates.map(f64::abs).fold(0.0, f64::max);
+    let step_s = std::f64::consts::TAU / (STEPS_OF_PULSES * fastest);
+    step_s.is_finite().then(|| {
+        format!(
+            "`ida` evaluates the ends of its steps alone. It may pass over short pulses, which a sine gives where an \
+             exponential such as that of a diode switches: write `solve esdirk`, or `solve ida(max_step = {} [s])`",
+            significant(step_s, 2)
+        )
+    })
 }
 
 /// The same of a model that is looked at with its records, but not run as the experiment says.

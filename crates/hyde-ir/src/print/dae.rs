@@ -150,6 +150,15 @@ pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
             );
         }
     }
+    if !dae.turning.is_empty() || dae.exponential {
+        let _ = writeln!(out, "turning");
+    }
+    for &rate in &dae.turning {
+        line(&mut out, names.expr(rate));
+    }
+    if dae.exponential {
+        line(&mut out, "an exponential grows".to_owned());
+    }
     let _ = writeln!(out, "starts");
     for start in &dae.starts {
         let space = match start.place.space {
