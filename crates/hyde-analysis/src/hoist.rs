@@ -64,18 +64,7 @@ struct Hoisting {
 impl Hoisting {
     fn apply(&mut self, dae: &mut Dae, root: &mut ExprId) {
         for id in dae.exprs.below(&[*root]) {
-            let mut constant = match dae.exprs[id] {
-                Expr::Const(_) => true,
-                Expr::Param(_, index) => index.stride == 0,
-                Expr::Unary(..) | Expr::Binary(..) | Expr::If(..) | Expr::NoEvent(_) => true,
-                Expr::Time
-                | Expr::Counter
-                | Expr::Var(..)
-                | Expr::Der(..)
-                | Expr::Pre(..)
-                | Expr::Relation(_)
-                | Expr::InMode(..) => false,
-            };
+            let mut constant = dae.exprs[id].is_one_number();
             dae.exprs[id].for_each_child(|child| constant &= self.constant[&child]);
             self.constant.insert(id, constant);
         }

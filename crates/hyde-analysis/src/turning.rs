@@ -14,7 +14,7 @@
 
 use crate::solve::solve_for;
 use hyde_ir::{BinaryOp, Dae, Expr, ExprArena, ExprId, Index, UnaryOp, VariableKind};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::cell::Cell;
 
 /// What turns in the residual, of which every explicit variable is replaced by its definition.
@@ -87,7 +87,7 @@ struct Turning {
 
 impl Turning {
     fn see(&mut self, arena: &mut ExprArena, root: ExprId) {
-        for id in self.new_below(arena, root) {
+        for id in arena.below_new(root, |id| self.known.contains_key(&id)) {
             let expr = arena[id];
             let mut of = match self.even.contains_key(&expr) {
                 true => Of::Time,
@@ -113,24 +113,9 @@ impl Turning {
             }
             self.even.get(&leaf).copied()
         });
-        let is_constant = !arena.any(rate, |leaf| own(leaf) != Of::Parameters);
-        if is_constant && !self.rates.contains(&rate) {
+        if arena.is_parametric(rate) && !self.rates.contains(&rate) {
             self.rates.push(rate);
         }
-    }
-
-    /// The nodes that were not looked at before, each after its children.
-    fn new_below(&self, arena: &ExprArena, root: ExprId) -> Vec<ExprId> {
-        let mut new = FxHashSet::default();
-        let mut stack = vec![root];
-        while let Some(id) = stack.pop() {
-            if !self.known.contains_key(&id) && new.insert(id) {
-                arena[id].for_each_child(|child| stack.push(child));
-            }
-        }
-        let mut sorted: Vec<ExprId> = new.into_iter().collect();
-        sorted.sort_unstable();
-        sorted
     }
 }
 
@@ -203,20 +188,11 @@ fn without_minus(arena: &ExprArena, id: ExprId) -> ExprId {
 
 /// What a node adds to its children.
 fn own(expr: Expr) -> Of {
-    match expr {
-        Expr::Time => Of::Time,
-        Expr::Param(_, index) if index.stride != 0 => Of::Other,
-        Expr::Const(_)
-        | Expr::Param(..)
-        | Expr::Unary(..)
-        | Expr::Binary(..)
-        | Expr::If(..)
-        | Expr::NoEvent(_) => Of::Parameters,
-        Expr::Counter
-        | Expr::Var(..)
-        | Expr::Der(..)
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::InMode(..) => Of::Other,
+    if expr.is_one_number() {
+        return Of::Parameters;
+    }
+    match expr == Expr::Time {
+        true => Of::Time,
+        false => Of::Other,
     }
 }

@@ -8,7 +8,16 @@ impl ExprArena {
     #[must_use]
     pub fn below(&self, roots: &[ExprId]) -> Vec<ExprId> {
         let mut found = Vec::new();
-        self.walk(roots, &mut found, |_| false);
+        self.walk(roots, &mut found, |_| false, |_| false);
+        found.sort_unstable();
+        found
+    }
+
+    /// The same without the nodes that are known, nor what is below these alone.
+    #[must_use]
+    pub fn below_new(&self, root: ExprId, known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
+        let mut found = Vec::new();
+        self.walk(&[root], &mut found, known, |_| false);
         found.sort_unstable();
         found
     }
@@ -16,14 +25,16 @@ impl ExprArena {
     /// Whether some node below and including `root` satisfies `test`.
     #[must_use]
     pub fn any(&self, root: ExprId, test: impl Fn(Expr) -> bool) -> bool {
-        self.walk(&[root], &mut Vec::new(), |id| test(self[id]))
+        self.walk(&[root], &mut Vec::new(), |_| false, |id| test(self[id]))
     }
 
-    /// Visits each node below and including the roots once, until one ends it; whether one did. What was visited is `found`.
+    /// Visits each node below and including the roots once, but for those that are known, until one ends it; whether one did.
+    /// What was visited is `found`.
     fn walk(
         &self,
         roots: &[ExprId],
         found: &mut Vec<ExprId>,
+        known: impl Fn(ExprId) -> bool,
         ends: impl Fn(ExprId) -> bool,
     ) -> bool {
         /// Most expressions are small, and a short list is searched sooner than a table is made.
@@ -31,6 +42,9 @@ impl ExprArena {
         let mut stack: Vec<ExprId> = roots.to_vec();
         let mut seen = FxHashSet::default();
         while let Some(id) = stack.pop() {
+            if known(id) {
+                continue;
+            }
             let new = if found.len() < SHORT {
                 !found.contains(&id)
             } else {
@@ -53,20 +67,6 @@ impl ExprArena {
     /// Whether an expression is made of parameters and numbers alone.
     #[must_use]
     pub fn is_parametric(&self, root: ExprId) -> bool {
-        !self.any(root, |expr| match expr {
-            Expr::Time
-            | Expr::Counter
-            | Expr::Var(..)
-            | Expr::Der(..)
-            | Expr::Pre(..)
-            | Expr::Relation(_)
-            | Expr::InMode(..) => true,
-            Expr::Const(_)
-            | Expr::Param(..)
-            | Expr::Unary(..)
-            | Expr::Binary(..)
-            | Expr::If(..)
-            | Expr::NoEvent(_) => false,
-        })
+        !self.any(root, |expr| !expr.is_parametric())
     }
 }

@@ -12,7 +12,6 @@ use crate::id::ExprId;
 use crate::{BinaryOp, UnaryOp};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
-use std::collections::hash_map::Entry;
 
 /// How far from the end of its domain a function has the slope that stands for the infinite one at the end.
 const NEAR: f64 = 1e-8;
@@ -75,18 +74,7 @@ fn below(
     known: &mut FxHashMap<ExprId, bool>,
     kind: impl Fn(Expr) -> bool,
 ) -> bool {
-    let mut stack = vec![root];
-    let mut new = Vec::new();
-    while let Some(id) = stack.pop() {
-        if let Entry::Vacant(place) = known.entry(id) {
-            place.insert(false);
-            new.push(id);
-            arena[id].for_each_child(|child| stack.push(child));
-        }
-    }
-    // Children are older than their parents.
-    new.sort_unstable();
-    for id in new {
+    for id in arena.below_new(root, |id| known.contains_key(&id)) {
         let mut is_found = kind(arena[id]);
         arena[id].for_each_child(|child| is_found |= known[&child]);
         known.insert(id, is_found);

@@ -145,6 +145,32 @@ impl Expr {
         }
     }
 
+    /// Whether the node is made of parameters and numbers alone where its children are.
+    #[must_use]
+    pub fn is_parametric(self) -> bool {
+        match self {
+            Self::Const(_)
+            | Self::Param(..)
+            | Self::Unary(..)
+            | Self::Binary(..)
+            | Self::If(..)
+            | Self::NoEvent(_) => true,
+            Self::Time
+            | Self::Counter
+            | Self::Var(..)
+            | Self::Der(..)
+            | Self::Pre(..)
+            | Self::Relation(_)
+            | Self::InMode(..) => false,
+        }
+    }
+
+    /// Whether the node reads one number, whatever the counter of its equation is.
+    #[must_use]
+    pub fn is_one_number(self) -> bool {
+        self.is_parametric() && !matches!(self, Self::Param(_, index) if index.stride != 0)
+    }
+
     /// Calls `visit` with each child.
     pub fn for_each_child(self, mut visit: impl FnMut(ExprId)) {
         match self {

@@ -4,7 +4,7 @@ use crate::event::{Assignment, Clock, Delay, InitialCondition, Pin, Reaction, Re
 use crate::experiment::Experiment;
 use crate::foreign::ForeignPart;
 use crate::jacobian::{Jacobian, JacobianEntry};
-use crate::kernels::Kernels;
+use crate::kernels::{Constant, Kernels};
 use hyde_diag::{Origin, Span};
 use hyde_ir::Prior;
 use hyde_ir::dae::{Automaton, Function, Hold, Selection};
@@ -240,6 +240,14 @@ impl Program {
     #[must_use]
     pub fn may_pulse(&self) -> bool {
         self.exponential && self.turning > 0
+    }
+
+    /// The shortest period of a sine of the time whose rate is known, in s; infinite without one.
+    #[must_use]
+    pub fn shortest_period_s(&self, parameters: &[f64]) -> f64 {
+        let rate = |number| self.kernels.constant(Constant::Turning(number), parameters);
+        let rates = (0..self.turning).filter_map(rate).map(f64::abs);
+        std::f64::consts::TAU / rates.fold(0.0, f64::max)
     }
 
     /// The derivatives of a function, in the order its kernel writes them.

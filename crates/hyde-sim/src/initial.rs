@@ -7,6 +7,7 @@
 use crate::consistent::{Consistent, is_rounding};
 use crate::failure::{Failure, FailureKind};
 use crate::moment::{At, Moment};
+use crate::norms::{largest_of, norm};
 use crate::release::{self, by_parameter};
 use crate::selection;
 use crate::state::State;
@@ -118,7 +119,6 @@ pub(crate) fn solve(
         }
         out
     };
-    let norm = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut r = residual(state, now.at(), &past);
     for iteration in 0..MAX_ITERATIONS {
         let mut values_now = values(state, now.at(), &positions, &found, count);
@@ -168,9 +168,8 @@ pub(crate) fn solve(
             }
             factor *= 0.5;
         }
-        let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let most = size_of(&solved);
-        if whole && size_of(&step) <= 1e-11 * (1.0 + most) {
+        let most = largest_of(&solved);
+        if whole && largest_of(&step) <= 1e-11 * (1.0 + most) {
             consistent.solve(state, now, true)?;
             return check(state, now.at(), round);
         }

@@ -4,6 +4,7 @@
 
 use crate::failure::{Failure, FailureKind};
 use crate::moment::At;
+use crate::norms::largest_of;
 use crate::state::State;
 use nalgebra::DMatrix;
 
@@ -112,7 +113,7 @@ fn dependent(state: &State<'_>, matrix: &[f64]) -> Option<Dependent> {
         return None;
     }
     let taking_part = |values: Vec<f64>| -> Vec<usize> {
-        let most = values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let most = largest_of(&values);
         let part = values.iter().enumerate();
         part.filter(|(_, v)| v.abs() > TAKES_PART * most)
             .map(|(number, _)| number)

@@ -7,7 +7,7 @@ use crate::runge_kutta::{Factors, RungeKutta};
 use crate::setup::Setup;
 use crate::state::State;
 use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, Statistics};
-use hyde_program::{Constant, Method, Program, Relation, RelationUse, Target};
+use hyde_program::{Method, Program, Relation, RelationUse, Target};
 
 /// A solver that owns the state.
 pub(crate) enum Solver<'a> {
@@ -101,19 +101,13 @@ fn longest_in_a_period(program: &Program, setup: &Setup<'_>, method: Method) -> 
     if setup.max_step_s.is_finite() {
         return f64::INFINITY;
     }
-    let rate = |number| {
-        program
-            .kernels
-            .constant(Constant::Turning(number), &setup.parameters)
-    };
-    let rates = (0..program.turning).filter_map(rate).map(f64::abs);
-    let fastest = rates.fold(0.0, f64::max);
     let shortest = (setup.stop_s - setup.start_s) / STEPS_OF_A_RUN;
     let steps = match method {
         Method::Esdirk => STEPS_OF_ESDIRK,
         Method::Ida | Method::Auto => STEPS_OF_IDA,
     };
-    (std::f64::consts::TAU / (steps * fastest)).max(shortest)
+    let period_s = program.shortest_period_s(&setup.parameters);
+    (period_s / steps).max(shortest)
 }
 
 /// The relations that may change at a moment that is not known before.

@@ -22,13 +22,11 @@ const STEPS_OF_PULSES: f64 = 200.0;
 fn of_method(program: &Program, run: &Run) -> Option<String> {
     let statistics = &run.results.statistics;
     let by_ida = statistics.method == Method::Ida && statistics.left_ida.is_none();
-    let constant = |which| program.kernels.constant(which, &run.parameters);
-    if !by_ida || !program.may_pulse() || constant(Constant::MaxStep).is_some() {
+    let largest = program.kernels.constant(Constant::MaxStep, &run.parameters);
+    if !by_ida || !program.may_pulse() || largest.is_some() {
         return None;
     }
-    let rates = (0..program.turning).filter_map(|number| constant(Constant::Turning(number)));
-    let fastest = rates.map(f64::abs).fold(0.0, f64::max);
-    let step_s = std::f64::consts::TAU / (STEPS_OF_PULSES * fastest);
+    let step_s = program.shortest_period_s(&run.parameters) / STEPS_OF_PULSES;
     step_s.is_finite().then(|| {
         format!(
             "`ida` evaluates the ends of its steps alone. It may pass over short pulses, which a sine gives where an \
