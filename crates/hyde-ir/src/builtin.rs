@@ -91,6 +91,12 @@ impl BinaryOp {
     }
 }
 
+/// Sine and cosine of a value, each to the last bit what it is alone. Both share the reduction of the argument.
+#[must_use]
+pub fn sine_and_cosine(value: f64) -> (f64, f64) {
+    libm::sincos(value)
+}
+
 fn truth(condition: bool) -> f64 {
     f64::from(u8::from(condition))
 }
@@ -101,4 +107,31 @@ fn truth(condition: bool) -> f64 {
 )]
 fn equal(a: f64, b: f64) -> bool {
     a == b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_and_cosine_together_are_what_each_is_alone() {
+        let powers = (-1074..1024).map(|exponent| 1.37 * libm::exp2(f64::from(exponent)));
+        let angles = (0..20_000).map(|k| f64::from(k) * 0.011);
+        let special = [0.0, f64::INFINITY, f64::NAN, std::f64::consts::FRAC_PI_4];
+        for value in powers.chain(angles).chain(special) {
+            for value in [value, -value] {
+                let (sine, cosine) = sine_and_cosine(value);
+                assert_eq!(
+                    sine.to_bits(),
+                    UnaryOp::Sin.apply(value).to_bits(),
+                    "{value}"
+                );
+                assert_eq!(
+                    cosine.to_bits(),
+                    UnaryOp::Cos.apply(value).to_bits(),
+                    "{value}"
+                );
+            }
+        }
+    }
 }

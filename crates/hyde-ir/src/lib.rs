@@ -47,7 +47,7 @@ mod law;
 mod validate;
 mod variable;
 
-pub use builtin::{BinaryOp, UnaryOp};
+pub use builtin::{BinaryOp, UnaryOp, sine_and_cosine};
 pub use columns::Along;
 pub use dae::Dae;
 pub use expr::{Expr, ExprArena, Index, Memo, Number, Range};

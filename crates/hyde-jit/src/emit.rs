@@ -110,12 +110,12 @@ fn function(
         part,
         kept,
         builder,
-        &mut |function, name, arguments| {
+        &mut |function, name, parameters| {
             if let Some((_, reference)) = known.iter().find(|(other, _)| *other == name) {
                 return *reference;
             }
             let mut signature = Signature::new(native::PRINTED);
-            signature.params = vec![AbiParam::new(types::F64); arguments];
+            signature.params = parameters.iter().map(|own| AbiParam::new(*own)).collect();
             signature.returns.push(AbiParam::new(types::F64));
             let signature = function.import_signature(signature);
             let name_in_text = ExternalName::testcase(name);

@@ -1,7 +1,7 @@
 //! How each operation is made in machine code: by instructions, or by a call of the function that the interpreter uses.
 
 use cranelift_codegen::ir::condcodes::FloatCC;
-use hyde_ir::{BinaryOp, UnaryOp};
+use hyde_ir::{BinaryOp, UnaryOp, sine_and_cosine};
 
 /// How an operation on one value is made.
 #[derive(Clone, Copy)]
@@ -48,7 +48,17 @@ pub(crate) fn functions() -> Vec<Function> {
         | Binary::Pick(_)
         | Binary::Compare(_) => None,
     });
-    unary.chain(binary).collect()
+    let both = (SINE_AND_COSINE, hyde_sine_and_cosine as *const u8);
+    unary.chain(binary).chain([both]).collect()
+}
+
+/// The function that returns the sine of its first argument and writes the cosine where the second one says.
+pub(crate) const SINE_AND_COSINE: &str = "hyde_sine_and_cosine";
+
+extern "C" fn hyde_sine_and_cosine(a: f64, cosine: &mut f64) -> f64 {
+    let (sine, other) = sine_and_cosine(a);
+    *cosine = other;
+    sine
 }
 
 macro_rules! unary_functions {

@@ -6,9 +6,11 @@
 //! what does not change with the counter is computed before it.
 
 use crate::host;
+use crate::known::Known;
+use crate::load;
 use crate::parts::Parts;
 use crate::routine::{Leaf, Routine, Slot, Step};
-use crate::wanted::{Wanted, children, is_truth, moving};
+use crate::wanted::{Wanted, children, is_truth, moving, sines_with_cosines};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
 use cranelift_codegen::isa::TargetFrontendConfig;
@@ -21,9 +23,9 @@ use std::ops::{self, RangeInclusive};
 /// Ranges shorter than this are written out.
 const LOOP_FROM: usize = 8;
 
-/// Makes a function known to the code that calls it.
+/// Makes a function of some parameters, which returns a number, known to the code that calls it.
 pub(crate) type Import<'i> =
-    &'i mut dyn FnMut(&mut ir::Function, &'static str, usize) -> ir::FuncRef;
+    &'i mut dyn FnMut(&mut ir::Function, &'static str, &[types::Type]) -> ir::FuncRef;
 
 /// The code of a function while it is written.
 pub(crate) struct Lowering<'a, 'f, 'i> {
@@ -44,38 +46,13 @@ pub(crate) struct Lowering<'a, 'f, 'i> {
     read_in_loops: Vec<RangeInclusive<i32>>,
     /// Whether each node changes with the counter.
     pub(crate) moving: FxHashMap<ExprId, bool>,
+    /// Sines and cosines that one call computes, and where it writes the cosine.
+    pairs: FxHashMap<ExprId, (ExprId, ExprId)>,
+    of_cosine: Option<ir::StackSlot>,
     /// Which numbers are kept for the parts that follow, and those that are by now.
     parts: &'a Parts,
     kept: &'a mut FxHashSet<ExprId>,
     kept_base: Option<ir::Value>,
-}
-
-/// Nodes that have been lowered: as a number, and as a truth.
-#[derive(Clone, Default)]
-pub(crate) struct Known {
-    numbers: HashMap<ExprId, ir::Value>,
-    truths: HashMap<ExprId, ir::Value>,
-}
-
-impl Known {
-    pub(crate) fn get(&self, id: ExprId, wanted: Wanted) -> Option<ir::Value> {
-        match wanted {
-            Wanted::Number => self.numbers.get(&id).copied(),
-            Wanted::Truth => self.truths.get(&id).copied(),
-        }
-    }
-
-    pub(crate) fn insert(&mut self, id: ExprId, wanted: Wanted, value: ir::Value) {
-        match wanted {
-            Wanted::Number => self.numbers.insert(id, value),
-            Wanted::Truth => self.truths.insert(id, value),
-        };
-    }
-
-    fn remove(&mut self, id: ExprId) {
-        self.numbers.remove(&id);
-        self.truths.remove(&id);
-    }
 }
 
 /// The counter where an expression is evaluated.
@@ -103,6 +80,7 @@ pub(crate) fn lower<'a>(
     builder.switch_to_block(entry);
     builder.seal_block(entry);
     let frame = builder.block_params(entry)[0];
+    let moving = moving(dae, routine, steps.clone());
     let mut lowering = Lowering {
         dae,
         routine,
@@ -115,7 +93,9 @@ pub(crate) fn lower<'a>(
         reading: Default::default(),
         explicit: HashMap::new(),
         read_in_loops: Vec::new(),
-        moving: moving(dae, routine, steps.clone()),
+        pairs: sines_with_cosines(dae, moving.keys().copied()),
+        of_cosine: None,
+        moving,
         parts,
         kept,
         kept_base: None,
@@ -176,7 +156,7 @@ impl Lowering<'_, '_, '_> {
             }
         }
         if in_parts {
-            let flags = MemFlagsData::trusted().with_readonly().with_can_move();
+            let flags = load::unwritten();
             let (frame, offset) = (self.frame, Parts::OFFSET);
             let base = self.builder.ins().load(types::I64, flags, frame, offset);
             self.kept_base = Some(base);
@@ -184,7 +164,7 @@ impl Lowering<'_, '_, '_> {
         for slot in Slot::ALL {
             if used[slot as usize] {
                 let offset = 8 * (1 + slot as i32);
-                let flags = MemFlagsData::trusted().with_readonly().with_can_move();
+                let flags = load::unwritten();
                 let base = self
                     .builder
                     .ins()
@@ -288,22 +268,35 @@ impl Lowering<'_, '_, '_> {
                 });
                 continue;
             }
-            let value = self.node(id, wanted, at, local);
-            self.keep(id, wanted, value);
-            if self.routine.tick.is_some() {
-                self.note_reads(id);
+            match self.pairs.get(&id) {
+                Some(&(sine, cosine)) if wanted == Wanted::Number => {
+                    let values = self.sine_and_cosine(sine, local);
+                    self.learn(sine, wanted, values.0, local);
+                    self.learn(cosine, wanted, values.1, local);
+                }
+                _ => {
+                    let value = self.node(id, wanted, at, local);
+                    self.learn(id, wanted, value, local);
+                }
             }
-            let known = if self.moving[&id] {
-                &mut *local
-            } else {
-                &mut self.known
-            };
-            known.insert(id, wanted, value);
         }
         match self.lookup(root, wanted, local) {
             Some(value) => value,
             None => self.builder.ins().f64const(f64::NAN),
         }
+    }
+
+    /// Takes note of the code of a node.
+    fn learn(&mut self, id: ExprId, wanted: Wanted, value: ir::Value, local: &mut Known) {
+        self.keep(id, wanted, value);
+        if self.routine.tick.is_some() {
+            self.note_reads(id);
+        }
+        let known = match self.moving[&id] {
+            true => local,
+            false => &mut self.known,
+        };
+        known.insert(id, wanted, value);
     }
 
     fn lookup(&self, id: ExprId, wanted: Wanted, local: &Known) -> Option<ir::Value> {
@@ -407,8 +400,34 @@ impl Lowering<'_, '_, '_> {
         }
     }
 
+    /// Both of a sine's argument, by one call.
+    fn sine_and_cosine(&mut self, sine: ExprId, local: &Known) -> (ir::Value, ir::Value) {
+        let mut argument = self.frame;
+        self.dae.exprs[sine].for_each_child(|child| {
+            argument = self
+                .lookup(child, Wanted::Number, local)
+                .unwrap_or(argument);
+        });
+        let slot = *self.of_cosine.get_or_insert_with(|| {
+            let number = ir::StackSlotData::new(ir::StackSlotKind::ExplicitSlot, 8, 3);
+            self.builder.create_sized_stack_slot(number)
+        });
+        let place = self.builder.ins().stack_addr(types::I64, slot, 0);
+        let sine = self.call(host::SINE_AND_COSINE, &[argument, place]);
+        (
+            sine,
+            self.builder
+                .ins()
+                .stack_load(types::I64, types::F64, slot, 0),
+        )
+    }
+
     fn call(&mut self, name: &'static str, args: &[ir::Value]) -> ir::Value {
-        let function = (self.import)(self.builder.func, name, args.len());
+        let types = args
+            .iter()
+            .map(|&arg| self.builder.func.dfg.value_type(arg));
+        let types: Vec<types::Type> = types.collect();
+        let function = (self.import)(self.builder.func, name, &types);
         let call = self.builder.ins().call(function, args);
         self.builder.inst_results(call)[0]
     }
@@ -417,7 +436,7 @@ impl Lowering<'_, '_, '_> {
         match self.routine.leaf(self.dae, expr) {
             Some(Leaf::Number(value)) => self.builder.ins().f64const(value),
             Some(Leaf::Time) => {
-                let flags = MemFlagsData::trusted().with_readonly().with_can_move();
+                let flags = load::unwritten();
                 self.builder.ins().load(types::F64, flags, self.frame, 0)
             }
             Some(Leaf::Counter) => self.counter(at),
@@ -476,16 +495,6 @@ impl Lowering<'_, '_, '_> {
         };
         self.builder
             .ins()
-            .load(types::F64, load_flags(slot), base, offset)
-    }
-}
-
-/// What a kernel reads but never writes may be loaded anywhere.
-pub(crate) fn load_flags(slot: Slot) -> MemFlagsData {
-    match slot {
-        Slot::Unknown | Slot::Derivative | Slot::Memory | Slot::Input | Slot::Parameter => {
-            MemFlagsData::trusted().with_readonly().with_can_move()
-        }
-        Slot::Work | Slot::Out => MemFlagsData::trusted(),
+            .load(types::F64, load::flags(slot), base, offset)
     }
 }

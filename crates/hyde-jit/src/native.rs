@@ -122,9 +122,9 @@ fn define(
         part,
         kept,
         function,
-        &mut |function, name, arguments| {
+        &mut |function, name, parameters| {
             let mut signature = module.make_signature();
-            signature.params = vec![AbiParam::new(types::F64); arguments];
+            signature.params = parameters.iter().map(|own| AbiParam::new(*own)).collect();
             signature.returns.push(AbiParam::new(types::F64));
             match module.declare_function(name, Linkage::Import, &signature) {
                 Ok(imported) => module.declare_func_in_func(imported, function),

@@ -23,7 +23,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
         unknowns: unknowns(dae),
         n_unknowns: dae.n_unknowns,
         n_memory: dae.n_memory,
-        affine: dae.is_affine(),
+        affine_in: dae.affine_in(),
         n_work: dae.n_work,
         n_parameters: dae.n_parameters.1,
         parameters: parameters(dae),

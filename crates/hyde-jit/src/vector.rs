@@ -9,7 +9,9 @@
 //! run one element at a time instead.
 
 use crate::host;
-use crate::lower::{At, Known, Lowering, load_flags};
+use crate::known::Known;
+use crate::load;
+use crate::lower::{At, Lowering};
 use crate::routine::{Leaf, Slot, Step};
 use crate::wanted::{Wanted, children, is_truth};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
@@ -350,7 +352,7 @@ fn choose(
 
 fn unaligned(slot: Slot) -> MemFlagsData {
     let flags = MemFlagsData::new().with_notrap();
-    if load_flags(slot).readonly() {
+    if load::flags(slot).readonly() {
         flags.with_readonly().with_can_move()
     } else {
         flags

@@ -78,3 +78,26 @@ pub(crate) fn moving(dae: &Dae, routine: &Routine, steps: Range<usize>) -> FxHas
     }
     found
 }
+
+/// Sine and cosine of the same argument that are both among some nodes, by either of them.
+pub(crate) fn sines_with_cosines(
+    dae: &Dae,
+    nodes: impl Iterator<Item = ExprId>,
+) -> FxHashMap<ExprId, (ExprId, ExprId)> {
+    let mut of_argument: FxHashMap<ExprId, (Option<ExprId>, Option<ExprId>)> = FxHashMap::default();
+    for id in nodes {
+        if let Expr::Unary(op, argument) = dae.exprs[id] {
+            let pair = of_argument.entry(argument).or_default();
+            if op == UnaryOp::Sin {
+                pair.0 = Some(id);
+            } else if op == UnaryOp::Cos {
+                pair.1 = Some(id);
+            }
+        }
+    }
+    let both = of_argument
+        .into_values()
+        .filter_map(|(sine, cosine)| sine.zip(cosine));
+    both.flat_map(|pair| [(pair.0, pair), (pair.1, pair)])
+        .collect()
+}

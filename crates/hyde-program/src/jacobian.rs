@@ -1,5 +1,7 @@
 //! The union sparsity of all modes, and how derivatives of the residual fall into it.
 
+use std::ops::Range;
+
 /// A derivative of the residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JacobianEntry {
@@ -21,13 +23,33 @@ pub struct Jacobian {
     pub rows: Vec<i64>,
     /// Column of each entry.
     columns: Vec<u32>,
-    /// For each run of values of the kernel: first value, number, whether by derivatives.
-    runs: Vec<(usize, usize, bool)>,
+    /// The values of the kernel, stretch after stretch.
+    stretches: Vec<Stretch>,
     /// Entry that each value of the kernel is added to.
     positions: Vec<u32>,
-    /// Row and column of each value of the kernel.
-    cells: Vec<(u32, u32)>,
 }
+
+/// Successive values of the kernel.
+#[derive(Clone, Debug)]
+struct Stretch {
+    /// The first value, and how many there are.
+    first: usize,
+    len: usize,
+    by_derivative: bool,
+    cells: Cells,
+}
+
+/// Where the values of a stretch stand.
+#[derive(Clone, Debug)]
+enum Cells {
+    /// Each one row below and one column to the right of the one before, as an array of equations has them.
+    Diagonal { row: usize, column: usize },
+    /// Row and column of each.
+    Any(Vec<(u32, u32)>),
+}
+
+/// So many values are a diagonal of their own; fewer are not worth its start.
+const SHORTEST_DIAGONAL: usize = 8;
 
 impl Jacobian {
     /// The pattern of `n` unknowns from the derivatives in the order the kernel writes them, with more cells (row, column)
@@ -61,22 +83,12 @@ impl Jacobian {
             .iter()
             .map(|entry| u32::try_from(find(entry)).unwrap_or(u32::MAX))
             .collect();
-        let mut runs: Vec<(usize, usize, bool)> = Vec::new();
-        for (number, entry) in entries.iter().enumerate() {
-            match runs.last_mut() {
-                Some((_, len, by_derivative)) if *by_derivative == entry.by_derivative => *len += 1,
-                _ => runs.push((number, 1, entry.by_derivative)),
-            }
-        }
-        let to_u32 = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-        let cell = |entry: &JacobianEntry| (to_u32(entry.row), to_u32(entry.column));
         Self {
             column_starts,
             rows,
             columns,
-            runs,
+            stretches: stretches(entries),
             positions,
-            cells: entries.iter().map(cell).collect(),
         }
     }
 
@@ -117,27 +129,41 @@ impl Jacobian {
     /// `alpha*dF/dy + cj*dF/dy'` from the kernel's values.
     pub fn assemble(&self, values: &[f64], alpha: f64, cj: f64, matrix: &mut [f64]) {
         matrix.iter_mut().for_each(|entry| *entry = 0.0);
-        for &(first, len, by_derivative) in &self.runs {
-            let factor = if by_derivative { cj } else { alpha };
-            let run = first..first + len;
+        for stretch in &self.stretches {
+            let factor = if stretch.by_derivative { cj } else { alpha };
+            let run = stretch.range();
             for (&position, &value) in self.positions[run.clone()].iter().zip(&values[run]) {
                 matrix[position as usize] += factor * value;
             }
         }
     }
 
-    /// Each derivative times what it is by: gives the row and the product of an entry of a vector or of its rate.
+    /// Adds up the products of each row: of the derivatives and the entries of a vector, or of its rate.
     pub fn products(
         &self,
         values: &[f64],
         (by_value, by_rate): (&[f64], &[f64]),
-        mut give: impl FnMut(usize, f64),
+        rows: &mut [f64],
+        add: impl Fn(&mut f64, f64),
     ) {
-        for &(first, len, by_derivative) in &self.runs {
-            let vector = if by_derivative { by_rate } else { by_value };
-            let run = first..first + len;
-            for (&(row, column), &value) in self.cells[run.clone()].iter().zip(&values[run]) {
-                give(row as usize, value * vector[column as usize]);
+        for stretch in &self.stretches {
+            let vector = match stretch.by_derivative {
+                true => by_rate,
+                false => by_value,
+            };
+            let values = &values[stretch.range()];
+            match &stretch.cells {
+                Cells::Diagonal { row, column } => {
+                    let factors = values.iter().zip(&vector[*column..]);
+                    for (row, (value, factor)) in rows[*row..].iter_mut().zip(factors) {
+                        add(row, value * factor);
+                    }
+                }
+                Cells::Any(cells) => {
+                    for (&(row, column), &value) in cells.iter().zip(values) {
+                        add(&mut rows[row as usize], value * vector[column as usize]);
+                    }
+                }
             }
         }
     }
@@ -146,16 +172,73 @@ impl Jacobian {
     /// `dF/dy` for the others.
     pub fn assemble_consistent(&self, values: &[f64], differential: &[bool], matrix: &mut [f64]) {
         matrix.iter_mut().for_each(|entry| *entry = 0.0);
-        for &(first, len, by_derivative) in &self.runs {
-            let run = first..first + len;
+        for stretch in &self.stretches {
+            let run = stretch.range();
             for (&position, &value) in self.positions[run.clone()].iter().zip(&values[run]) {
                 let position = position as usize;
-                if differential[self.columns[position] as usize] == by_derivative {
+                if differential[self.columns[position] as usize] == stretch.by_derivative {
                     matrix[position] += value;
                 }
             }
         }
     }
+}
+
+impl Stretch {
+    /// Its values among those of the kernel.
+    fn range(&self) -> Range<usize> {
+        self.first..self.first + self.len
+    }
+}
+
+/// The entries in stretches: every diagonal is one, what stands between two of them another one.
+fn stretches(entries: &[JacobianEntry]) -> Vec<Stretch> {
+    let follows = |(one, next): (&JacobianEntry, &JacobianEntry)| {
+        (next.row, next.column) == (one.row + 1, one.column + 1)
+            && next.by_derivative == one.by_derivative
+    };
+    let to_u32 = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+    let mut found: Vec<Stretch> = Vec::new();
+    let mut first = 0;
+    while let Some(entry) = entries.get(first) {
+        let rest = &entries[first..];
+        let len = 1 + rest
+            .iter()
+            .zip(&rest[1..])
+            .take_while(|&pair| follows(pair))
+            .count();
+        let JacobianEntry {
+            row,
+            column,
+            by_derivative,
+        } = *entry;
+        let is_diagonal = len >= SHORTEST_DIAGONAL;
+        let cells = rest[..len]
+            .iter()
+            .map(|own| (to_u32(own.row), to_u32(own.column)));
+        match found.last_mut() {
+            Some(Stretch {
+                len: before,
+                by_derivative: of_before,
+                cells: Cells::Any(all),
+                ..
+            }) if !is_diagonal && *of_before == by_derivative => {
+                *before += len;
+                all.extend(cells);
+            }
+            _ => found.push(Stretch {
+                first,
+                len,
+                by_derivative,
+                cells: match is_diagonal {
+                    true => Cells::Diagonal { row, column },
+                    false => Cells::Any(cells.collect()),
+                },
+            }),
+        }
+        first += len;
+    }
+    found
 }
 
 #[cfg(test)]
@@ -188,5 +271,41 @@ mod tests {
         assert_eq!(matrix, vec![23.0, 7.0, 5.0, 0.0]);
         jacobian.assemble_consistent(&[5.0, 2.0, 3.0, 7.0], &[true, false], &mut matrix);
         assert_eq!(matrix, vec![2.0, 0.0, 5.0, 0.0]);
+    }
+
+    #[test]
+    fn products_of_diagonals_are_those_of_their_entries() {
+        // Three rows of single entries around two diagonals, one of them by derivatives.
+        let mut cells = vec![(4, 2, false), (4, 5, true)];
+        cells.extend((0..12).map(|k| (k, k + 1, false)));
+        cells.extend((0..9).map(|k| (k + 3, k, true)));
+        cells.push((12, 0, true));
+        let entry = |&(row, column, by_derivative): &(usize, usize, bool)| JacobianEntry {
+            row,
+            column,
+            by_derivative,
+        };
+        let entries: Vec<JacobianEntry> = cells.iter().map(entry).collect();
+        let jacobian = Jacobian::new(13, &entries, &[]);
+        let of_diagonals = jacobian
+            .stretches
+            .iter()
+            .filter(|stretch| matches!(stretch.cells, Cells::Diagonal { .. }));
+        assert_eq!(
+            of_diagonals.map(|stretch| stretch.len).collect::<Vec<_>>(),
+            [12, 9]
+        );
+        let numbered = |n: usize| -> Vec<f64> { (0..n).map(|k| (k as f64).sin()).collect() };
+        let (values, y) = (numbered(cells.len()), numbered(13));
+        let yp: Vec<f64> = y.iter().map(|value| 1.0 - value).collect();
+        let mut expected = vec![0.0; 13];
+        for (&(row, column, by_derivative), value) in cells.iter().zip(&values) {
+            expected[row] += value * if by_derivative { yp[column] } else { y[column] };
+        }
+        let mut rows = vec![0.0; 13];
+        jacobian.products(&values, (&y, &yp), &mut rows, |row, product| {
+            *row += product
+        });
+        assert_eq!(rows, expected);
     }
 }

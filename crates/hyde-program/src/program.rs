@@ -180,8 +180,9 @@ pub struct Program {
     pub n_unknowns: usize,
     /// Length of the memory.
     pub n_memory: usize,
-    /// Whether the residual is affine in the unknowns and their derivatives, with coefficients that change at events alone.
-    pub affine: bool,
+    /// Of a residual that is affine in the unknowns and their derivatives, with coefficients that change at events alone:
+    /// how many of the first places of the memory these read. Nothing of any other.
+    pub affine_in: Option<usize>,
     /// Length of the workspace.
     pub n_work: usize,
     /// Length of the parameter vector.

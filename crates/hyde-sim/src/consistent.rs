@@ -31,6 +31,13 @@ const MAX_SMALL_STEPS: usize = 8;
 /// Corrections by the factors of an earlier point at most: then its own are cheaper.
 const MOST_BY_OLD_FACTORS: usize = 3;
 
+/// The derivatives along the flow of y (all of it) and of the states' y'.
+#[derive(Clone, Default)]
+pub(crate) struct Flow {
+    pub(crate) dy: Vec<f64>,
+    pub(crate) dyp: Vec<f64>,
+}
+
 /// The solver of consistent values; keeps its factors from call to call.
 pub(crate) struct Consistent {
     solver: Option<SparseSolver>,
@@ -44,6 +51,7 @@ pub(crate) struct Consistent {
     /// What the unknowns were before a step, and what the terms of rows amount to.
     old: Vec<f64>,
     terms: Vec<f64>,
+    flow: Flow,
 }
 
 impl Consistent {
@@ -64,6 +72,7 @@ impl Consistent {
             correction: vec![0.0; n],
             old: Vec::with_capacity(n),
             terms: vec![0.0; n],
+            flow: Flow::default(),
         }
     }
 
@@ -153,40 +162,42 @@ impl Consistent {
         Err(with_equation(failure, state, at, worst, left))
     }
 
-    /// The derivatives along the flow of y (all of it) and of the states' y', after [`Consistent::solve`] at the point.
-    pub(crate) fn flow(
-        &mut self,
-        state: &mut State<'_>,
-        at: At<'_>,
-    ) -> Option<(Vec<f64>, Vec<f64>)> {
-        let At { y, yp, .. } = at;
-        let n = y.len();
-        let mut dy = vec![0.0; n];
-        let mut dyp = vec![0.0; n];
-        if n == 0 {
-            return Some((dy, dyp));
+    /// The derivatives along the flow, after [`Consistent::solve`] at the point.
+    pub(crate) fn flow(&mut self, state: &mut State<'_>, at: At<'_>) -> Option<&Flow> {
+        let differential = &state.differential;
+        let Flow { dy, dyp } = &mut self.flow;
+        dy.clear();
+        let rates = at.yp.iter().zip(differential);
+        dy.extend(rates.map(|(rate, state)| if *state { *rate } else { 0.0 }));
+        dyp.clear();
+        dyp.resize(dy.len(), 0.0);
+        if dy.is_empty() {
+            return Some(&self.flow);
         }
-        for (index, rate) in dy.iter_mut().enumerate() {
-            if state.differential[index] {
-                *rate = yp[index];
-            }
+        let mut right = std::mem::take(&mut self.correction);
+        state.directional(at, &self.flow.dy, &self.flow.dyp, &mut right);
+        right.iter_mut().for_each(|right| *right = -*right);
+        if state.moves_by_time(Function::Residual) {
+            let by_time = state.by_time(Function::Residual, at);
+            let pairs = right.iter_mut().zip(by_time);
+            pairs.for_each(|(right, by_time)| *right -= by_time);
         }
-        let mut right = vec![0.0; n];
-        state.directional(at, &dy, &dyp, &mut right);
-        let by_time = state.by_time(Function::Residual, at);
-        for (right, by_time) in right.iter_mut().zip(by_time) {
-            *right = -(*right + by_time);
+        let factored = self.factor_at(state, at);
+        if let (Ok(()), Some(solver)) = (&factored, &mut self.solver) {
+            solver.solve(&mut right);
         }
-        self.factor_at(state, at).ok()?;
-        self.solver.as_mut()?.solve(&mut right);
-        for (index, value) in right.into_iter().enumerate() {
-            if state.differential[index] {
-                dyp[index] = value;
+        let Flow { dy, dyp } = &mut self.flow;
+        let unknowns = dy.iter_mut().zip(dyp).zip(&state.differential);
+        for (((dy, dyp), state), solved) in unknowns.zip(&right) {
+            (*dy, *dyp) = if *state {
+                (*dy, *solved)
             } else {
-                dy[index] = value;
-            }
+                (*solved, 0.0)
+            };
         }
-        Some((dy, dyp))
+        self.correction = right;
+        factored.ok().filter(|()| self.solver.is_some())?;
+        Some(&self.flow)
     }
 
     /// Corrects the derivatives of consistent values by parameters: each right side is what the linearised equations leave,
@@ -252,15 +263,9 @@ impl Consistent {
             if let Some(solver) = &mut self.solver {
                 solver.solve(&mut self.correction);
             }
-            let mut values = vec![0.0; self.correction.len()];
-            for (index, value) in values.iter_mut().enumerate() {
-                let solved = match state.differential[index] {
-                    true => &mut now.yp[index],
-                    false => &mut now.y[index],
-                };
-                *value = *solved;
-                *solved -= self.correction[index];
-            }
+            now.read_solved(&state.differential, &mut self.old);
+            let values = &self.old;
+            now.correct_solved(&state.differential, (values, &self.correction), 1.0);
             let pairs = self.correction.iter().enumerate();
             let left: Option<Vec<f64>> = match &last {
                 None => are_of_here.then(|| self.correction.clone()),
@@ -268,7 +273,7 @@ impl Consistent {
             };
             let near = |left: Vec<f64>| {
                 let finite = left.iter().all(|own| own.is_finite());
-                finite && TOLERANCE * size(&values, &left) <= part
+                finite && TOLERANCE * size(values, &left) <= part
             };
             if left.is_some_and(near) {
                 return true;
@@ -326,21 +331,9 @@ impl Consistent {
         let mut factor = 1.0;
         let mut whole = false;
         let mut old = std::mem::take(&mut self.old);
-        old.clear();
-        let pairs = now.y.iter().zip(&now.yp).zip(&state.differential);
-        old.extend(pairs.map(|((y, yp), differential)| match differential {
-            true => *yp,
-            false => *y,
-        }));
+        now.read_solved(&state.differential, &mut old);
         for halving in 0..=MAX_HALVINGS {
-            for (index, &value) in old.iter().enumerate() {
-                let new = value - factor * self.correction[index];
-                if state.differential[index] {
-                    now.yp[index] = new;
-                } else {
-                    now.y[index] = new;
-                }
-            }
+            now.correct_solved(&state.differential, (&old, &self.correction), factor);
             let finite = self.evaluate(state, now.at());
             let after = norm(&self.residual);
             // Near the solution the residual is rounding and may as well grow.
@@ -373,9 +366,9 @@ impl Consistent {
     fn left_over_terms(&mut self, state: &State<'_>, at: At<'_>) -> f64 {
         self.terms.iter_mut().for_each(|terms| *terms = 0.0);
         let terms = &mut self.terms;
-        let add = |row: usize, term: f64| terms[row] += term.abs();
+        let add = |terms: &mut f64, term: f64| *terms += term.abs();
         let jacobian = state.program.jacobian();
-        jacobian.products(state.partials.values(), (at.y, at.yp), add);
+        jacobian.products(state.partials.values(), (at.y, at.yp), terms, add);
         largest_part(&self.residual, &self.terms)
     }
 

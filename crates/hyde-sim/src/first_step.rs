@@ -4,9 +4,10 @@
 //! does, it returns after 2|g'/g''|, in a flight that may be lower than the tolerance.
 
 use crate::active::is_active;
-use crate::consistent::Consistent;
+use crate::consistent::{Consistent, Flow};
 use crate::integrator::Integrator;
 use crate::moment::At;
+use crate::norms::mean_over_tolerances;
 use crate::setup::Setup;
 use crate::solver::FirstStep;
 use crate::state::State;
@@ -25,23 +26,16 @@ pub(crate) fn first_step(
 ) -> FirstStep {
     let t = integrator.now.t;
     let span = (setup.stop_s - t).max(1e-12);
-    let now = integrator.now.clone();
-    let flow = consistent.flow(integrator.state_mut(), now.at());
+    let (state, at) = integrator.state_now();
     let (mut by_curvature_s, mut longest_s) = (1e-2 * span, f64::INFINITY);
-    if let Some((dy, dyp)) = flow {
-        integrator.set_slopes(&dy);
+    if let Some(flow) = consistent.flow(state, at) {
         // The first step is of order 1: its error is half the square of the step times the second derivative.
-        let mut square = 0.0;
-        for (value, rate) in now.y.iter().zip(&dyp) {
-            let weighted = rate / (setup.rtol * value.abs() + setup.atol);
-            square += weighted * weighted;
-        }
-        let norm = (square / now.y.len().max(1) as f64).sqrt();
+        let norm = mean_over_tolerances(&flow.dyp, at.y, (setup.rtol, setup.atol));
         if norm.is_finite() && norm > 0.0 {
             by_curvature_s = by_curvature_s.min((0.5 / norm).sqrt());
         }
-        let back = shortest_return(integrator.state_mut(), now.at(), (&dy, &dyp));
-        longest_s = PART_OF_RETURN * back;
+        longest_s = PART_OF_RETURN * shortest_return(state, at, flow);
+        integrator.set_slopes(&flow.dy);
     }
     let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
     FirstStep {
@@ -51,13 +45,14 @@ pub(crate) fn first_step(
 }
 
 /// The shortest time in s after which a root function that is zero now, and leaves zero, comes back.
-fn shortest_return(state: &mut State<'_>, at: At<'_>, (dy, dyp): (&[f64], &[f64])) -> f64 {
+fn shortest_return(state: &mut State<'_>, at: At<'_>, flow: &Flow) -> f64 {
     let program = state.program;
     let n = program.relations.len();
     if n == 0 {
         return f64::INFINITY;
     }
     let roots = state.values(Function::Roots, at);
+    let Flow { dy, dyp } = flow;
     let (mut rates, mut bends, mut sizes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let partials = state.partials(Function::Roots, at);
     for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {

@@ -17,6 +17,8 @@ pub(crate) struct Integrator<'a> {
     solver: Solver<'a>,
     /// Where the run is.
     pub(crate) now: Moment,
+    /// Room for values that may turn out not to be consistent.
+    room: Moment,
     tolerances: (f64, f64),
     conserve: bool,
     /// Steps since the last start, and the part of the tolerances that a step is given.
@@ -57,6 +59,7 @@ impl<'a> Integrator<'a> {
         Ok(Self {
             solver,
             now,
+            room: Moment::default(),
             tolerances: (setup.rtol, setup.atol),
             conserve: setup.conserve,
             steps: 0,
@@ -78,6 +81,11 @@ impl<'a> Integrator<'a> {
 
     pub(crate) fn state_mut(&mut self) -> &mut State<'a> {
         self.solver.state_mut()
+    }
+
+    /// The state, and where the run is.
+    pub(crate) fn state_now(&mut self) -> (&mut State<'a>, At<'_>) {
+        (self.solver.state_mut(), self.now.at())
     }
 
     /// One step, never past `stop`. Returns where the step began.
@@ -123,8 +131,8 @@ impl<'a> Integrator<'a> {
     ) -> Result<bool, Box<Failure>> {
         let mut now = self.now.clone();
         consistent.make_exact(self.state_mut(), &mut now);
-        if let Some((rates, _)) = consistent.flow(self.state_mut(), now.at()) {
-            now.set_slopes(&self.state().differential, &rates);
+        if let Some(flow) = consistent.flow(self.state_mut(), now.at()) {
+            now.set_slopes(&self.state().differential, &flow.dy);
         }
         let begun = self.solver.begin_anew(now.at());
         let begun = begun.map_err(|error| self.failure(&error))?;
@@ -143,6 +151,11 @@ impl<'a> Integrator<'a> {
     pub(crate) fn set_slopes(&mut self, flow: &[f64]) {
         let differential = &self.solver.state().differential;
         self.now.set_slopes(differential, flow);
+    }
+
+    /// The largest values, to be given back.
+    pub(crate) fn take_largest(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.largest)
     }
 
     /// The same values again that were the largest before.
@@ -214,9 +227,9 @@ impl<'a> Integrator<'a> {
         &mut self,
         consistent: &mut Consistent,
     ) -> Result<(), Box<Failure>> {
-        let mut now = self.now.clone();
-        consistent.solve(self.state_mut(), &mut now, false)?;
-        self.now = now;
+        self.room.clone_from(&self.now);
+        consistent.solve(self.solver.state_mut(), &mut self.room, false)?;
+        std::mem::swap(&mut self.now, &mut self.room);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! [`Moment`]: the continuous values of the model at a time, and [`At`], the same borrowed by what reads it.
 
 /// Values at a time.
-#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Moment {
     /// The time in s.
     pub(crate) t: f64,
@@ -33,6 +33,28 @@ impl Moment {
         self.yp.copy_from_slice(at.yp);
     }
 
+    /// What consistent values are solved for, into a list: the derivatives of states, the values of the others.
+    pub(crate) fn read_solved(&self, differential: &[bool], into: &mut Vec<f64>) {
+        into.clear();
+        let pairs = self.y.iter().zip(&self.yp).zip(differential);
+        into.extend(pairs.map(|((y, yp), state)| if *state { *yp } else { *y }));
+    }
+
+    /// Makes them what they were before, less a part of a correction.
+    pub(crate) fn correct_solved(
+        &mut self,
+        differential: &[bool],
+        (before, correction): (&[f64], &[f64]),
+        part: f64,
+    ) {
+        let now = self.y.iter_mut().zip(&mut self.yp).zip(differential);
+        // Both are written, for a loop without a way to choose works at several at once.
+        for (((y, yp), state), (before, correction)) in now.zip(before.iter().zip(correction)) {
+            let new = before - part * correction;
+            (*y, *yp) = if *state { (*y, new) } else { (new, *yp) };
+        }
+    }
+
     /// Gives the algebraic variables their slopes along the flow, where these have a value.
     pub(crate) fn set_slopes(&mut self, differential: &[bool], flow: &[f64]) {
         for ((rate, &state), &slope) in self.yp.iter_mut().zip(differential).zip(flow) {
@@ -46,6 +68,19 @@ impl Moment {
     pub(crate) fn at(&self) -> At<'_> {
         let Self { t, y, yp } = self;
         At { t: *t, y, yp }
+    }
+}
+
+impl Clone for Moment {
+    fn clone(&self) -> Self {
+        self.at().to_moment()
+    }
+
+    /// In the room that is there.
+    fn clone_from(&mut self, other: &Self) {
+        self.t = other.t;
+        self.y.clone_from(&other.y);
+        self.yp.clone_from(&other.yp);
     }
 }
 

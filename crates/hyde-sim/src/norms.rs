@@ -73,6 +73,31 @@ pub(crate) fn largest_correction(
     all
 }
 
+/// The root mean square of numbers over `relative*|value| + absolute`; 0 without any.
+#[multiversion(targets("x86_64+avx2"))]
+pub(crate) fn mean_over_tolerances(
+    numbers: &[f64],
+    values: &[f64],
+    (relative, absolute): (f64, f64),
+) -> f64 {
+    let count = numbers.len().max(1) as f64;
+    let mut sums = [0.0; LANES];
+    let (numbers, rest) = numbers.as_chunks::<LANES>();
+    let (values, values_rest) = values.as_chunks::<LANES>();
+    for (group, values) in numbers.iter().zip(values) {
+        for lane in 0..LANES {
+            let part = group[lane] / (relative * values[lane].abs() + absolute);
+            sums[lane] += part * part;
+        }
+    }
+    let mut all: f64 = sums.iter().sum();
+    for (number, value) in rest.iter().zip(values_rest) {
+        let part = number / (relative * value.abs() + absolute);
+        all += part * part;
+    }
+    (all / count).sqrt()
+}
+
 /// The first if it is larger.
 #[inline(always)]
 fn larger(value: f64, most: f64) -> f64 {
@@ -96,6 +121,8 @@ mod tests {
                 assert!((size - 3.0).abs() < 1e-15);
                 let square = 9.0 + 0.25 * (n as f64 - 1.0);
                 assert!((norm(&values) - square.sqrt()).abs() < 1e-14);
+                let mean = mean_over_tolerances(&values, &others, (0.25, 0.5));
+                assert!((mean - (square / n as f64).sqrt()).abs() < 1e-14);
                 values[at] = f64::NAN;
                 assert!(largest_of(&values) <= 0.5);
             }

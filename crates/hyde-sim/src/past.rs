@@ -30,7 +30,7 @@ pub(crate) fn limits(
     let values = state.values(Function::Delayed, now.at());
     let slopes = consistent
         .and_then(|consistent| rates_at(Function::Delayed, state, consistent, now.at()))
-        .map_or_else(|| vec![0.0; count], |(rates, ..)| rates);
+        .map_or_else(|| vec![0.0; count], |(rates, _)| rates);
     Some(Limits { values, slopes })
 }
 

@@ -1,6 +1,6 @@
 //! Where a root function that is zero goes (M2).
 
-use crate::consistent::Consistent;
+use crate::consistent::{Consistent, Flow};
 use crate::moment::{At, Moment};
 use crate::state::State;
 use crate::zero::reach_s;
@@ -71,15 +71,16 @@ pub(crate) fn root_rates(
     relations: &[usize],
 ) -> Vec<RootRate> {
     let At { t, y, yp } = at;
-    let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, at) else {
+    let Some((now, flow)) = rates_at(Function::Roots, state, consistent, at) else {
         return vec![RootRate::default(); state.program.relations.len()];
     };
+    let Flow { dy, dyp } = flow.clone();
     let (differential, (_, atol)) = (state.differential.clone(), state.tolerances);
     let mut rates_of = |t: f64, y: Vec<f64>| -> Option<Vec<f64>> {
         let yp = yp.to_vec();
         let mut beside = Moment { t, y, yp };
         consistent.solve(state, &mut beside, false).ok()?;
-        let (rates, ..) = rates_at(Function::Roots, state, consistent, beside.at())?;
+        let (rates, _) = rates_at(Function::Roots, state, consistent, beside.at())?;
         Some(rates)
     };
     let otherwise = rates_of(t, rounded_otherwise(y, &differential, atol));
@@ -137,20 +138,20 @@ fn rounded_otherwise(y: &[f64], differential: &[bool], atol: f64) -> Vec<f64> {
 }
 
 /// The derivatives of a function along the flow at a point, and those of y and y'.
-pub(crate) fn rates_at(
+pub(crate) fn rates_at<'c>(
     function: Function,
     state: &mut State<'_>,
-    consistent: &mut Consistent,
+    consistent: &'c mut Consistent,
     at: At<'_>,
-) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+) -> Option<(Vec<f64>, &'c Flow)> {
     let program = state.program;
     let mut rates = vec![0.0; program.rows(function)];
-    let (dy, dyp) = consistent.flow(state, at)?;
+    let flow = consistent.flow(state, at)?;
     let partials = state.partials(function, at);
     for (entry, value) in program.partials(function).iter().zip(partials) {
         rates[entry.row] += match entry.wrt {
-            Wrt::Unknown(column) => value * dy[column],
-            Wrt::Derivative(column) => value * dyp[column],
+            Wrt::Unknown(column) => value * flow.dy[column],
+            Wrt::Derivative(column) => value * flow.dyp[column],
             Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) | Wrt::Memory(_) => 0.0,
         };
     }
@@ -158,5 +159,5 @@ pub(crate) fn rates_at(
     for (rate, by_time) in rates.iter_mut().zip(by_time) {
         *rate += by_time;
     }
-    Some((rates, dy, dyp))
+    Some((rates, flow))
 }

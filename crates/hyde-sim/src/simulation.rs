@@ -27,6 +27,7 @@ use crate::guards::{self, Crossing, Trail};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
+use crate::moment::Moment;
 use crate::past;
 use crate::release::told;
 use crate::results::Results;
@@ -60,6 +61,8 @@ pub(crate) struct Simulation<'a> {
     /// Relations that were crossed and stayed as they are, and how often in a row.
     in_vain: (Vec<usize>, u32),
     hurry: Hurry,
+    /// Room for the left limit of an instant.
+    room: Moment,
     /// Events change relations alone, no modes: they are those of an operating point.
     modes_are_given: bool,
     /// Where it is, if its caller takes it in pieces.
@@ -112,6 +115,7 @@ impl<'a> Simulation<'a> {
             crossed: Vec::new(),
             in_vain: (Vec::new(), 0),
             hurry: Hurry::default(),
+            room: Moment::default(),
             modes_are_given: false,
             pieces: Pieces::default(),
         })

@@ -78,7 +78,7 @@ pub(crate) fn method(program: &Program, asked: Method) -> Method {
             let strikes = searched(program).any(|relation| relation.used == RelationUse::When)
                 && targets.any(|target| matches!(target, Target::State(_)));
             let changes = searched(program).next().is_some();
-            let short = program.affine || program.n_unknowns <= SMALL;
+            let short = program.affine_in.is_some() || program.n_unknowns <= SMALL;
             !program.clocks.is_empty() || !strikes && (changes || short || program.exponential)
         }
     };

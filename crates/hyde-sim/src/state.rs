@@ -106,7 +106,7 @@ impl<'a> State<'a> {
     /// The derivative of a function by the time alone, by a difference: the time, and record columns and delayed values that
     /// move with it, have no other.
     pub(crate) fn by_time(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
-        if function == Function::Residual && !self.program.timed && self.slides.is_empty() {
+        if !self.moves_by_time(function) {
             return vec![0.0; self.program.rows(function)];
         }
         let step = self.inputs.difference_s(at.t);
@@ -114,6 +114,11 @@ impl<'a> State<'a> {
         let now = self.values(function, at);
         let pairs = later.into_iter().zip(now);
         pairs.map(|(later, now)| (later - now) / step).collect()
+    }
+
+    /// Whether a function may change with the time alone.
+    pub(crate) fn moves_by_time(&self, function: Function) -> bool {
+        function != Function::Residual || self.program.timed || !self.slides.is_empty()
     }
 
     /// The values of a function with the memory as it is.
@@ -253,8 +258,8 @@ impl<'a> State<'a> {
         self.mean_residual_partials(at);
         out.iter_mut().for_each(|value| *value = 0.0);
         let jacobian = self.program.jacobian();
-        let add = |row: usize, product: f64| out[row] += product;
-        jacobian.products(self.partials.values(), (dy, dyp), add);
+        let add = |row: &mut f64, product: f64| *row += product;
+        jacobian.products(self.partials.values(), (dy, dyp), out, add);
         if !self.slides.is_empty() {
             self.exchange_in(at, dy, out);
         }
@@ -323,8 +328,8 @@ impl<'a> State<'a> {
     }
 
     pub(crate) fn residual_partials(&mut self, at: At<'_>) {
-        let affine = self.is_affine();
-        if affine && self.partials.are_of(&self.z, &self.p) {
+        let read = self.affine_in();
+        if read.is_some_and(|read| self.partials.are_of(&self.z[..read], &self.p)) {
             return;
         }
         self.read_continuous(at.t);
@@ -342,23 +347,23 @@ impl<'a> State<'a> {
                 kernels.partials(Function::Residual, point, workspace, &mut values);
             });
         }
-        let of = affine.then_some((self.z.as_slice(), self.p.as_slice()));
+        let of = read.map(|read| (&self.z[..read], self.p.as_slice()));
         self.partials.take(values, of);
     }
 
     /// The coefficients of an affine residual (see [`System::coefficients`]) and the choice of states at a point; none where
     /// states may be chosen anew.
     pub(crate) fn coefficients_at(&mut self, at: At<'_>) -> Option<u64> {
-        if !self.is_affine() || !self.program.selections.is_empty() {
-            return None;
-        }
+        self.affine_in()
+            .filter(|_| self.program.selections.is_empty())?;
         self.residual_partials(at);
         self.coefficients()
     }
 
-    /// Whether the residual is affine where the run is: its derivatives follow from memory and parameters.
-    fn is_affine(&self) -> bool {
-        self.program.affine && self.slides.is_empty() && self.loose.is_empty()
+    /// Where the residual is affine, its derivatives follow from parameters and so many places of the memory.
+    fn affine_in(&self) -> Option<usize> {
+        let straight = self.slides.is_empty() && self.loose.is_empty();
+        self.program.affine_in.filter(|_| straight)
     }
 
     /// The model at a point, with the room that kernels work in.
@@ -376,23 +381,18 @@ impl<'a> State<'a> {
     }
 }
 
-/// Whether all values are finite: what is not, times 0, is not 0. Several sums at once, for each waits for its last term.
+/// Whether all values are finite.
 #[inline]
 fn all_finite(values: &[f64]) -> bool {
-    let (groups, rest) = values.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for group in groups {
-        for (sum, value) in sums.iter_mut().zip(group) {
-            *sum += 0.0 * value;
-        }
-    }
-    let all = sums.iter().chain(rest);
-    all.fold(0.0, |sum, value| sum + 0.0 * value) == 0.0
+    // To the end: without a way out the loop takes several at a time, and none waits for the one before.
+    values
+        .iter()
+        .fold(true, |all, value| all & value.is_finite())
 }
 
 impl System for State<'_> {
     fn coefficients(&self) -> Option<u64> {
-        self.is_affine().then(|| self.partials.changes())
+        self.affine_in().map(|_| self.partials.changes())
     }
 
     fn residual(

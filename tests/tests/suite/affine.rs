@@ -31,7 +31,27 @@ end free;
 
 fn is_affine(more: &str, equations: &str) -> bool {
     let example = mass(more, equations).rewritten("METHOD", "auto");
-    example.analyze().unwrap().is_affine()
+    example.analyze().unwrap().affine_in().is_some()
+}
+
+#[test]
+fn coefficients_read_truths_and_modes_alone_unless_a_held_value_is_a_factor() {
+    let read = |more: &str, equations: &str| {
+        let example = mass(more, equations).rewritten("METHOD", "auto");
+        let dae = example.analyze().unwrap();
+        (dae.affine_in(), dae.relations.len(), dae.n_memory)
+    };
+    let spring = "clocked c(50 [ms]) Stiffness k = 800 [N/m] + sample(x)*1 [N/m2]; Force f = -k*sample(x); end c;";
+    let (affine, truths, all) = read(
+        spring,
+        "m*der(v) = hold(c.f) - (if x > 0 then d else 2*d)*v;",
+    );
+    assert!(truths < all);
+    assert_eq!(affine, Some(truths));
+    let (affine, _, all) = read(spring, "m*der(v) = -hold(c.k)*x;");
+    assert_eq!(affine, Some(all));
+    let (affine, ..) = read(spring, "m*der(v) = hold(c.f) - d*v*abs(v)/(1 [m/s]);");
+    assert_eq!(affine, None);
 }
 
 #[test]

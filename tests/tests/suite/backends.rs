@@ -39,6 +39,41 @@ fn a_kernel_of_several_functions_agrees_to_the_last_bit() {
     agrees(&case);
 }
 
+/// One call computes both of an argument: of scalars, of the elements of a loop, and in a tick before and after an assignment.
+#[test]
+fn sines_with_cosines_agree_to_the_last_bit() {
+    let text = "package turning;
+import SI.*;
+model Turning
+  Angle x[12](start = 0.3, fixed = true);
+  Angle y(start = 0.2, fixed = true);
+  Real both = sin(y)*cos(y);
+  Real held = hold(c.a);
+  clocked c(10 [ms])
+    Angle phi(start = 0) = pre(phi) + 0.1 [rad]*sin(sample(y));
+    Real a(start = 0) = sin(phi)*sample(both) - cos(phi)*cos(sample(y));
+  end c;
+equation
+  der(y) = (both - cos(y)^3)*1 [rad/s];
+  for i in 1:12 loop
+    der(x[i]) = (sin(x[i])^2 - cos(x[i])*both + held)*1 [rad/s];
+  end for;
+end Turning;
+experiment run of Turning
+  stop 1 [s];
+end run;
+";
+    let any = Example::load("tests/models/travelling_nut.hyde", Some("free")).unwrap();
+    let case = Case {
+        name: "turning".to_owned(),
+        folder: String::new(),
+        example: any.replaced(text, "run"),
+    };
+    let clif = case.example.emit(Stage::Clif).unwrap();
+    assert!(clif.contains("hyde_sine_and_cosine"));
+    agrees(&case);
+}
+
 /// All kernels of a case at some points.
 fn agrees(case: &Case) {
     let [native, oracle] = both(case);

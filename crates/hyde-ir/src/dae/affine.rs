@@ -1,4 +1,4 @@
-//! Whether the residual is affine in the unknowns and their derivatives.
+//! Whether the residual is affine in the unknowns and their derivatives, and what of the memory its coefficients read.
 
 use super::{Dae, Space};
 use crate::{BinaryOp, Expr, ExprId, UnaryOp, VarId};
@@ -20,24 +20,36 @@ enum Dependence {
 use Dependence::{Affine, Bent, Fixed, Given};
 
 impl Dae {
-    /// Whether the residual is affine in the unknowns and their derivatives, with coefficients that change at events alone.
-    /// Then one iteration of Newton's method solves a step, whatever its matrix was evaluated at.
+    /// Whether the residual is affine in the unknowns and their derivatives, with coefficients that change at events alone:
+    /// how many places of the memory these read then. Those of truths and modes are the first, and all if they read no
+    /// others. Then one iteration of Newton's method solves a step, whatever its matrix was evaluated at.
     #[must_use]
-    pub fn is_affine(&self) -> bool {
+    pub fn affine_in(&self) -> Option<usize> {
+        let of_switches = self.relations.len() + self.automata.len();
+        if self.n_memory > of_switches && self.is_affine(Given) {
+            return Some(of_switches);
+        }
+        self.is_affine(Fixed).then_some(self.n_memory)
+    }
+
+    /// Whether it is if the values of the memory, but for truths and modes, depend on the unknowns like this.
+    fn is_affine(&self, memory: Dependence) -> bool {
         let mut known: HashMap<ExprId, Dependence> = HashMap::new();
         let mut of_variable: HashMap<VarId, Dependence> = HashMap::new();
         for definition in &self.definitions {
-            let own = self.dependence(definition.value, &mut known, &of_variable);
+            let own = self.dependence(definition.value, memory, &mut known, &of_variable);
             let all = of_variable.entry(definition.var).or_insert(own);
             *all = own.max(*all);
         }
         let mut residuals = self.residuals.iter();
-        residuals.all(|row| self.dependence(row.value, &mut known, &of_variable) <= Affine)
+        let mut own = |value| self.dependence(value, memory, &mut known, &of_variable);
+        residuals.all(|row| own(row.value) <= Affine)
     }
 
     fn dependence(
         &self,
         root: ExprId,
+        memory: Dependence,
         known: &mut HashMap<ExprId, Dependence>,
         of_variable: &HashMap<VarId, Dependence>,
     ) -> Dependence {
@@ -48,7 +60,8 @@ impl Dae {
             let of = |child: ExprId| known.get(&child).copied().unwrap_or(Bent);
             let own = match self.exprs[id] {
                 Expr::Var(var, _) => match self.place(var).map(|place| place.space) {
-                    Some(Space::Memory | Space::Parameter) => Fixed,
+                    Some(Space::Memory) => memory,
+                    Some(Space::Parameter) => Fixed,
                     Some(Space::Input) => Given,
                     Some(Space::Unknown) => Affine,
                     Some(Space::Work) => of_variable.get(&var).copied().unwrap_or(Bent),
@@ -57,9 +70,9 @@ impl Dae {
                 Expr::Const(_)
                 | Expr::Counter
                 | Expr::Param(..)
-                | Expr::Pre(..)
                 | Expr::Relation(_)
                 | Expr::InMode(..) => Fixed,
+                Expr::Pre(..) => memory,
                 Expr::Time => Given,
                 Expr::Der(..) => Affine,
                 Expr::Unary(UnaryOp::Neg, value) => of(value),

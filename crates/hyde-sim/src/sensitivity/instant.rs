@@ -5,7 +5,7 @@
 //! its share off again, s - f dt/dp.
 
 use super::Sensitivities;
-use crate::consistent::Consistent;
+use crate::consistent::{Consistent, Flow};
 use crate::integrator::Integrator;
 use crate::moment::At;
 use crate::results::GradientEndKind;
@@ -63,7 +63,7 @@ impl Sensitivities {
         if self.moves.iter().all(|moves| *moves == 0.0) {
             return;
         }
-        let Some((dy, dyp)) = consistent.flow(integrator.state_mut(), at) else {
+        let Some(Flow { dy, dyp }) = consistent.flow(integrator.state_mut(), at) else {
             self.stop(at.t, GradientEndKind::Singular);
             return;
         };
@@ -92,7 +92,7 @@ impl Sensitivities {
         }
         let slopes = self.of(Function::Roots, integrator.state_mut(), at);
         let rates = rates_at(Function::Roots, integrator.state_mut(), consistent, at);
-        let Some((rates, ..)) = rates else {
+        let Some((rates, _)) = rates else {
             self.stop(at.t, GradientEndKind::Singular);
             return;
         };

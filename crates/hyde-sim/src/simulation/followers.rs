@@ -129,9 +129,8 @@ impl<'a> Followers<'a> {
         (happened, stepped): (bool, bool),
     ) {
         if let (Some(meter), Some(before)) = (&mut self.meter, left.metered) {
-            let now = run.integrator.now.clone();
-            let state = run.integrator.state_mut();
-            meter.instant(&before, &state.values(Function::Outputs, now.at()));
+            let (state, now) = run.integrator.state_now();
+            meter.instant(&before, &state.values(Function::Outputs, now));
         }
         self.point(run);
         let on_grid = self.rows.are_due(run.integrator.now.t);
@@ -170,11 +169,7 @@ impl<'a> Followers<'a> {
 
     /// A row of the values now.
     fn row(&mut self, run: &mut Run<'_, 'a>) -> Row {
-        let now = run.integrator.now.clone();
-        self.rows.row(
-            run.integrator.state_mut(),
-            self.sensitivities.as_ref(),
-            now.at(),
-        )
+        let (state, now) = run.integrator.state_now();
+        self.rows.row(state, self.sensitivities.as_ref(), now)
     }
 }

@@ -68,6 +68,7 @@ impl Simulation<'_> {
         let stepped = arrived.jump || entered || ticked && moved;
         let (followers, mut run) = self.followers();
         followers.right(&mut run, left, (happened, stepped));
+        self.room = limit.values;
         if changed || restart {
             self.restart()?;
         }
@@ -89,9 +90,8 @@ impl Simulation<'_> {
         if self.in_vain.1 < IN_VAIN || !crossed.iter().all(of_equation) {
             return;
         }
-        let now = self.integrator.now.clone();
-        let state = self.integrator.state_mut();
-        state.follow(crossed, now.at());
+        let (state, now) = self.integrator.state_now();
+        state.follow(crossed, now);
     }
 
     pub(super) fn iterate(
@@ -100,7 +100,7 @@ impl Simulation<'_> {
         at_start: bool,
     ) -> Result<bool, Box<Failure>> {
         let mut now = std::mem::take(&mut self.integrator.now);
-        let largest = self.integrator.largest().to_vec();
+        let largest = self.integrator.take_largest();
         let outcome = Instant {
             state: self.integrator.state_mut(),
             largest: &largest,
@@ -114,6 +114,7 @@ impl Simulation<'_> {
         }
         .iterate(scheduled, at_start);
         self.integrator.now = now;
+        self.integrator.set_largest(largest);
         outcome
     }
 
@@ -127,8 +128,10 @@ impl Simulation<'_> {
         let t = self.integrator.now.t;
         let delayed = self.integrator.state_mut().delayed_at(t).to_vec();
         let sensitivities = self.followers.sensitivities.as_ref();
+        let mut values = std::mem::take(&mut self.room);
+        values.clone_from(&self.integrator.now);
         Limit {
-            values: self.integrator.now.clone(),
+            values,
             z: self.integrator.state().z.clone(),
             delayed,
             slopes: sensitivities.map(Sensitivities::snapshot),
@@ -138,12 +141,10 @@ impl Simulation<'_> {
     /// Runs the clocks that tick on the left limit, whatever events happened at the instant since (C1); consistent
     /// values follow if something that the equations read has changed.
     pub(super) fn tick(&mut self, left: &Limit) -> Result<bool, Box<Failure>> {
-        let mut now = self.integrator.now.clone();
         let state = self.integrator.state_mut();
         let mut memory = std::mem::replace(&mut state.z, left.z.clone());
         let mut slopes = left.slopes.clone();
-        let sensitivities = &mut self.followers.sensitivities;
-        let along = sensitivities.as_ref().zip(slopes.as_mut());
+        let along = self.followers.sensitivities.as_ref().zip(slopes.as_mut());
         let Ticked {
             ticks,
             changed,
@@ -159,15 +160,13 @@ impl Simulation<'_> {
         state.z = memory;
         self.results.statistics.ticks += ticks;
         if changed {
-            self.consistent
-                .solve(self.integrator.state_mut(), &mut now, false)?;
+            self.be_consistent()?;
         }
-        if let (Some(sensitivities), Some(slopes)) = (sensitivities, &slopes) {
+        if let (Some(sensitivities), Some(slopes)) = (&mut self.followers.sensitivities, &slopes) {
             sensitivities.take_written(slopes, &written);
-            let state = self.integrator.state_mut();
-            sensitivities.be_consistent(state, &mut self.consistent, now.at());
+            let (state, now) = self.integrator.state_now();
+            sensitivities.be_consistent(state, &mut self.consistent, now);
         }
-        self.integrator.now = now;
         Ok(changed)
     }
 

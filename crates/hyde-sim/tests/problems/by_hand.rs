@@ -91,7 +91,7 @@ pub(crate) fn program(
         unknowns,
         n_unknowns,
         n_memory,
-        affine: false,
+        affine_in: None,
         n_work: 0,
         n_parameters: declared.len() + equations.derived(&declared).len(),
         parameters: Vec::new(),
