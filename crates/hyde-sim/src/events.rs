@@ -9,8 +9,9 @@
 //! 4. consistent values.
 //!
 //! Where relations of equations lead each other in a circle, or to where there is no solution, the other branches are
-//! [searched](branches). Fifty rounds, or modes that were met before at this instant without a state having jumped, end the run: the conditions
-//! would fire for ever.
+//! [searched](branches). Modes that were met before at this instant without a state having jumped: guards are looked at more
+//! closely. If they lead in a circle still, the modes stay where all this is noise at rest, beneath the tolerance. Else they end
+//! the run, as fifty rounds do: the conditions would fire for ever.
 
 mod branches;
 mod edges;
@@ -54,6 +55,8 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) crossed: Vec<usize>,
     /// Relations of equations change, and nothing else happens.
     pub(crate) modes_are_given: bool,
+    /// What takes longer than this many s is no event of this instant.
+    pub(crate) long_s: f64,
 }
 
 /// What is known of the relations at an instant.
@@ -110,7 +113,7 @@ impl Instant<'_, '_> {
                 doubtful,
                 not_finite,
             } = known;
-            turned.extend(self.true_guards(&truths));
+            turned.extend(self.true_guards(&truths, &roots));
             let numbered = truths.iter().copied().enumerate();
             let mut flipped = program.write_truths(&mut self.state.z, numbered);
             switched.extend(&flipped);
@@ -141,6 +144,22 @@ impl Instant<'_, '_> {
                 self.state.doubtful = doubtful;
                 return Ok(changed);
             }
+            let exits_alone = fired
+                .iter()
+                .all(|&reaction| self.only_changes_mode(reaction));
+            let circles = looked_closer && exits_alone && !fired.is_empty();
+            if circles
+                && flipped.is_empty()
+                && !slid
+                && let Some(at_rest) = self.at_rest(&turned)
+            {
+                for (guard, _) in &at_rest {
+                    self.state.z[*guard] = 0.0;
+                }
+                self.set_edges(|_, _| false);
+                self.state.doubtful = at_rest;
+                return Ok(changed);
+            }
             changed = true;
             struck |= fired.iter().any(|&reaction| self.strikes(reaction));
             for &relation in &flipped {
@@ -154,8 +173,7 @@ impl Instant<'_, '_> {
                 branches = Branches::from(self);
             }
             let key: Vec<u64> = self.mode_key();
-            let repeats = seen.contains(&key) && fired.iter().all(|&r| self.only_changes_mode(r));
-            let again = repeats && !fired.is_empty();
+            let again = exits_alone && !fired.is_empty() && seen.contains(&key);
             if again && looked_closer {
                 return Err(self.chattering(&causes));
             }
@@ -176,6 +194,7 @@ impl Instant<'_, '_> {
                 looked_closer = true;
                 seen.drain(..seen.len() - 1);
                 located.extend(self.all_but_zero(&turned));
+                turned.clear();
             }
         }
         Err(self.without_end(&causes, struck))
@@ -281,16 +300,15 @@ impl Instant<'_, '_> {
         })
     }
 
-    /// The guards of current modes that are true.
-    fn true_guards(&self, truths: &[bool]) -> Vec<usize> {
+    /// The guards of current modes that are true, with their root functions' values.
+    fn true_guards(&self, truths: &[bool], roots: &[f64]) -> Vec<(usize, f64)> {
         let program = self.state.program;
-        (0..truths.len())
-            .filter(|&number| {
-                matches!(program.relations[number].used, RelationUse::Exit(..))
-                    && truths[number]
-                    && is_active(self.state, number)
-            })
-            .collect()
+        let guards = (0..truths.len()).filter(|&number| {
+            matches!(program.relations[number].used, RelationUse::Exit(..))
+                && truths[number]
+                && is_active(self.state, number)
+        });
+        guards.map(|number| (number, roots[number])).collect()
     }
 
     /// The guards of current modes that are true now and were not: of these the root function is at its zero.

@@ -9,6 +9,7 @@
 //!   in a circle of guards           half of what it moves while rounding of an instant reaches  reach_s
 //! a relation after an instant       twice its value there, and the way until it turns           doubt
 //! a relation that is followed       many times rounding and the tolerance of the run            followed
+//! guards in a circle, at rest       a part of the tolerance of the run                          beneath
 //! a surface that is met             moved, and rounding of the states that it reads             of_surface
 //! a surface that is slid on         a billionth of the states that it reads                     is_off_surface
 //! ```
@@ -32,6 +33,8 @@ const OFF: f64 = 1e-9;
 /// How many times rounding, and how many times the tolerance, a root function goes until its relation is located again.
 const FAR: f64 = 1e3;
 const FAR_OF_TOLERANCE: f64 = 100.0;
+/// A part of the tolerance that no result shows.
+const BENEATH: f64 = 1e-3;
 
 /// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
 /// guard `g > 0` and the other with `g < 0`, must not both see theirs true. A state that has come to zero from afar, as the
@@ -100,19 +103,30 @@ pub(crate) fn doubt(root: f64, truth: bool, detour: f64) -> f64 {
 /// How far from zero each root function is when its relation is followed no longer.
 pub(crate) fn followed(state: &mut State<'_>, at: At<'_>) -> Vec<f64> {
     let rounding = rounding(state, at, &[]);
-    let mut far: Vec<f64> = rounding
-        .into_iter()
-        .map(|rounding| FAR * rounding)
-        .collect();
+    let pairs = rounding.into_iter().zip(of_tolerance(state, at));
+    pairs
+        .map(|(rounding, tolerance)| FAR * rounding + FAR_OF_TOLERANCE * tolerance)
+        .collect()
+}
+
+/// How far from zero the results of the run do not show a root function.
+pub(crate) fn beneath(state: &mut State<'_>, at: At<'_>) -> Vec<f64> {
+    let tolerances = of_tolerance(state, at).into_iter();
+    tolerances.map(|tolerance| BENEATH * tolerance).collect()
+}
+
+/// What the tolerances of the unknowns that it reads amount to, for each root function.
+fn of_tolerance(state: &mut State<'_>, at: At<'_>) -> Vec<f64> {
     let (rtol, atol) = state.tolerances;
+    let mut found = vec![0.0; state.program.relations.len()];
     let partials = state.partials(Function::Roots, at);
     for (entry, value) in state.program.partials(Function::Roots).iter().zip(partials) {
         if let Wrt::Unknown(column) = entry.wrt {
             let tolerance = rtol * at.y[column].abs() + atol;
-            far[entry.row] += FAR_OF_TOLERANCE * (value * tolerance).abs();
+            found[entry.row] += (value * tolerance).abs();
         }
     }
-    far
+    found
 }
 
 /// How far from a surface rounding of its arguments, of this size together, may lead.

@@ -1,8 +1,8 @@
 //! Instants that were located: how near to zero root functions count as at it.
 
 use super::{Instant, Known};
-use crate::root_rates::root_rates;
-use crate::zero::{located_s, moved, reach_s};
+use crate::root_rates::{RootRate, root_rates};
+use crate::zero::{self, located_s, moved, reach_s};
 use hyde_program::RelationUse;
 
 impl Instant<'_, '_> {
@@ -47,13 +47,28 @@ impl Instant<'_, '_> {
 
     /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
     /// cross zero within a moment of now count by the direction in which they do.
-    pub(super) fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
-        let at = self.now.at();
-        let rates = root_rates(self.state, self.consistent, at, guards);
+    pub(super) fn all_but_zero(&mut self, guards: &[(usize, f64)]) -> Vec<(usize, f64)> {
+        let rates = self.rates_of(guards);
         let reach_s = reach_s(self.now.t);
-        guards
-            .iter()
-            .map(|&guard| (guard, 0.5 * reach_s * rates[guard].mean.abs()))
-            .collect()
+        let near = |&(guard, _): &(usize, f64)| (guard, 0.5 * reach_s * rates[guard].mean.abs());
+        guards.iter().map(near).collect()
+    }
+
+    /// The guards in a circle that nothing but noise leads in, with how far from zero each may be until its sign counts
+    /// again: at rest, as of a friction without a force, all of them stay beneath the tolerance for long. `None` where one of
+    /// them does not. The mode is left as it is then, for no result shows the difference.
+    pub(super) fn at_rest(&mut self, guards: &[(usize, f64)]) -> Option<Vec<(usize, f64)>> {
+        let beneath = zero::beneath(self.state, self.now.at());
+        let rates = self.rates_of(guards);
+        let stays = |&(guard, root): &(usize, f64)| {
+            root.abs() + self.long_s * rates[guard].mean.abs() <= beneath[guard]
+        };
+        let bands = guards.iter().map(|&(guard, _)| (guard, beneath[guard]));
+        guards.iter().all(stays).then(|| bands.collect())
+    }
+
+    fn rates_of(&mut self, guards: &[(usize, f64)]) -> Vec<RootRate> {
+        let numbers: Vec<usize> = guards.iter().map(|(guard, _)| *guard).collect();
+        root_rates(self.state, self.consistent, self.now.at(), &numbers)
     }
 }

@@ -12,6 +12,9 @@ use hyde_program::RelationUse;
 /// Relations that are crossed so often in a row and stay as they are will do so without end.
 const IN_VAIN: u32 = 4;
 
+/// What leaves its zero in this part of the run, does so at all.
+const PART_OF_RUN: f64 = 1e-3;
+
 /// Values at an instant, from one side of it.
 pub(super) struct Limit {
     values: Moment,
@@ -111,6 +114,7 @@ impl Simulation<'_> {
             sensitivities: self.followers.sensitivities.as_mut(),
             crossed: std::mem::take(&mut self.crossed),
             modes_are_given: self.modes_are_given,
+            long_s: PART_OF_RUN * (self.setup.stop_s - self.setup.start_s),
         }
         .iterate(scheduled, at_start);
         self.integrator.now = now;
