@@ -400,7 +400,7 @@ impl Lowering<'_, '_, '_> {
         }
     }
 
-    /// Both of a sine's argument, by one call.
+    /// The sine and the cosine of one argument, by one call.
     fn sine_and_cosine(&mut self, sine: ExprId, local: &Known) -> (ir::Value, ir::Value) {
         let mut argument = self.frame;
         self.dae.exprs[sine].for_each_child(|child| {

@@ -55,7 +55,7 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) crossed: Vec<usize>,
     /// Relations of equations change, and nothing else happens.
     pub(crate) modes_are_given: bool,
-    /// What takes longer than this many s is no event of this instant.
+    /// How long guards that are at rest stay at their zeros, in s.
     pub(crate) long_s: f64,
 }
 

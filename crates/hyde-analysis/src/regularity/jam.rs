@@ -84,20 +84,11 @@ fn proportions(system: &System) -> (Vec<Row>, Vec<Node>, BTreeMap<VarId, usize>)
 
 /// A scalar equation of scalars that are known at no instant beforehand.
 fn may_be_proportion(system: &System, equation: &Equation) -> bool {
-    let own = |expr: Expr| match expr {
-        Expr::Var(var, _) => system.is_continuous(var) && system.flat.variables[var].len.is_none(),
-        Expr::Der(..)
-        | Expr::Time
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::InMode(..)
-        | Expr::Counter => false,
-        Expr::Const(_)
-        | Expr::Param(..)
-        | Expr::Unary(..)
-        | Expr::Binary(..)
-        | Expr::If(..)
-        | Expr::NoEvent(_) => true,
+    let own = |expr: Expr| {
+        if let Expr::Var(var, _) = expr {
+            return system.is_continuous(var) && system.flat.variables[var].len.is_none();
+        }
+        expr.is_parametric()
     };
     let below = system.flat.exprs.below(&[equation.lhs, equation.rhs]);
     equation.range == Range::SCALAR && below.into_iter().all(|id| own(system.flat.exprs[id]))

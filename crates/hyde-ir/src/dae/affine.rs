@@ -20,9 +20,9 @@ enum Dependence {
 use Dependence::{Affine, Bent, Fixed, Given};
 
 impl Dae {
-    /// Whether the residual is affine in the unknowns and their derivatives, with coefficients that change at events alone:
-    /// how many places of the memory these read then. Those of truths and modes are the first, and all if they read no
-    /// others. Then one iteration of Newton's method solves a step, whatever its matrix was evaluated at.
+    /// If the residual is affine in the unknowns and their derivatives, with coefficients that change at events alone: how many
+    /// of the first places of the memory the coefficients read. Relations and modes have the first places; other values follow.
+    /// One iteration of Newton's method solves a step of an affine residual, whatever its matrix was evaluated at.
     #[must_use]
     pub fn affine_in(&self) -> Option<usize> {
         let of_switches = self.relations.len() + self.automata.len();
@@ -32,7 +32,8 @@ impl Dae {
         self.is_affine(Fixed).then_some(self.n_memory)
     }
 
-    /// Whether it is if the values of the memory, but for truths and modes, depend on the unknowns like this.
+    /// Whether the residual is affine. `memory` says what its values are taken for, but for those of relations and modes: given
+    /// ones cannot be factors of unknowns.
     fn is_affine(&self, memory: Dependence) -> bool {
         let mut known: HashMap<ExprId, Dependence> = HashMap::new();
         let mut of_variable: HashMap<VarId, Dependence> = HashMap::new();

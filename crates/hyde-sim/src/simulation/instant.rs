@@ -12,7 +12,7 @@ use hyde_program::RelationUse;
 /// Relations that are crossed so often in a row and stay as they are will do so without end.
 const IN_VAIN: u32 = 4;
 
-/// What leaves its zero in this part of the run, does so at all.
+/// A guard that stays at its zero for this part of the run is at rest.
 const PART_OF_RUN: f64 = 1e-3;
 
 /// Values at an instant, from one side of it.
