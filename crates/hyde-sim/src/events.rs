@@ -140,9 +140,7 @@ impl Instant<'_, '_> {
                 if struck && let Some(relation) = self.comes_back_at_once(&truths, &roots) {
                     return Err(self.struck_without_end(&program.relations[relation].text));
                 }
-                self.set_edges(|_, _| false);
-                self.state.doubtful = doubtful;
-                return Ok(changed);
+                return Ok(self.end(changed, doubtful));
             }
             let exits_alone = fired
                 .iter()
@@ -156,9 +154,9 @@ impl Instant<'_, '_> {
                 for (guard, _) in &at_rest {
                     self.state.z[*guard] = 0.0;
                 }
-                self.set_edges(|_, _| false);
-                self.state.doubtful = at_rest;
-                return Ok(changed);
+                // Of a guard at rest the wider band counts, which is found first.
+                let bands = at_rest.into_iter().chain(doubtful).collect();
+                return Ok(self.end(changed, bands));
             }
             changed = true;
             struck |= fired.iter().any(|&reaction| self.strikes(reaction));
@@ -186,9 +184,7 @@ impl Instant<'_, '_> {
                 sensitivities.be_consistent(self.state, self.consistent, at);
             }
             if found == Found::Indifferent && fired.is_empty() {
-                self.set_edges(|_, _| false);
-                self.state.doubtful = doubtful;
-                return Ok(changed);
+                return Ok(self.end(changed, doubtful));
             }
             if again {
                 looked_closer = true;
@@ -198,6 +194,14 @@ impl Instant<'_, '_> {
             }
         }
         Err(self.without_end(&causes, struck))
+    }
+
+    /// Ends the iteration where nothing fires, with how far from zero each doubtful relation may be until its sign counts
+    /// again. Returns whether anything changed.
+    fn end(&mut self, changed: bool, doubtful: Vec<(usize, f64)>) -> bool {
+        self.set_edges(|_, _| false);
+        self.state.doubtful = doubtful;
+        changed
     }
 
     /// The truth of every relation that matters. A guard may ask for another relation, `if a > 0 then …`: it is looked at
