@@ -64,18 +64,60 @@ impl Series {
 
     /// The values row after row.
     pub fn iter(&self) -> impl Iterator<Item = f64> {
-        let mut next = 0;
-        (0..self.rows).map(move |row| {
-            next += usize::from(self.new[row / WORD] >> (row % WORD) & 1 == 1);
-            let place = next - 1;
-            let piece = self.full.get(place / PIECE).unwrap_or(&self.last);
-            piece[place % PIECE]
+        let (mut steps, mut value) = (self.steps(), f64::NAN);
+        (0..self.rows).map(move |_| {
+            value = steps.step().unwrap_or(value);
+            value
         })
+    }
+
+    /// What is new in the rows, row after row.
+    pub(crate) fn steps(&self) -> Steps<'_> {
+        Steps {
+            new: self.new.iter(),
+            word: 0,
+            left: 0,
+            piece: [].iter(),
+            others: self.full.iter(),
+            last: Some(&self.last),
+        }
     }
 
     /// Takes all rows out.
     pub fn clear(&mut self) {
         *self = Self::default();
+    }
+}
+
+/// A series on its way from the first row to the last.
+pub(crate) struct Steps<'s> {
+    new: std::slice::Iter<'s, u64>,
+    /// Bits of the rows to come, and how many these are.
+    word: u64,
+    left: usize,
+    piece: std::slice::Iter<'s, f64>,
+    others: std::slice::Iter<'s, Vec<f64>>,
+    last: Option<&'s [f64]>,
+}
+
+impl Steps<'_> {
+    /// The value of the next row, if it is another than that of the row before.
+    pub(crate) fn step(&mut self) -> Option<f64> {
+        if self.left == 0 {
+            (self.word, self.left) = (*self.new.next()?, WORD);
+        }
+        let new = self.word & 1 == 1;
+        self.word >>= 1;
+        self.left -= 1;
+        new.then(|| self.value()).flatten()
+    }
+
+    fn value(&mut self) -> Option<f64> {
+        if self.piece.as_slice().is_empty() {
+            let next = self.others.next().map(Vec::as_slice);
+            self.piece = next.or_else(|| self.last.take())?.iter();
+        }
+        self.piece.next().copied()
     }
 }
 

@@ -1,6 +1,8 @@
 //! Writes columns as a CSV record, in the form that is read.
 
-use crate::{Column, Written};
+use crate::column::Values;
+use crate::{Column, Written, in_unit, series};
+use hyde_units::Unit;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -23,7 +25,7 @@ pub fn write<'a>(columns: impl IntoIterator<Item = &'a Column>) -> String {
     String::from_utf8(text).unwrap_or_default()
 }
 
-/// The same to a file, a row at a time: nothing of it is kept.
+/// The same to a file, a row at a time: nothing of it is kept but the row before, whose cells are copied where they stay.
 ///
 /// # Errors
 /// What the file reports.
@@ -31,26 +33,37 @@ pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result
     let header: Vec<_> = columns.iter().map(header_cell).collect();
     let rows = columns.iter().map(|column| column.values.len());
     let first_of = first_of(columns);
-    let mut places = vec![0..0; columns.len()];
     let mut cells: Vec<_> = columns.iter().map(Cells::of).collect();
     let mut text = header.join(",");
+    // Where in the text each cell of the row before stands.
+    let mut places = vec![0..0; columns.len()];
+    // So much of the text is in the file.
+    let mut written = 0;
     for _ in 0..rows.min().unwrap_or(0) {
+        let row = text.len();
         for (at, (cells, &first)) in cells.iter_mut().zip(&first_of).enumerate() {
             text.push(if at == 0 { '\n' } else { ',' });
             let start = text.len();
             match first < at {
                 true => text.extend_from_within(places[first].clone()),
-                false => text.push_str(cells.next()),
+                false => match cells.step() {
+                    Some(value) => push_number(&mut text, value),
+                    None => text.extend_from_within(places[at].clone()),
+                },
             }
             places[at] = start..text.len();
         }
         if text.len() >= AT_ONCE {
-            out.write_all(text.as_bytes())?;
-            text.clear();
+            out.write_all(&text.as_bytes()[written..])?;
+            text.drain(..row);
+            written = text.len();
+            for place in &mut places {
+                *place = place.start - row..place.end - row;
+            }
         }
     }
     text.push('\n');
-    out.write_all(text.as_bytes())
+    out.write_all(&text.as_bytes()[written..])
 }
 
 /// Of each column the first with the same text: of the same values in memory, in the same unit.
@@ -70,30 +83,37 @@ fn first_of(columns: &[Written<'_>]) -> Vec<usize> {
     columns.iter().enumerate().map(first).collect()
 }
 
-/// The cells of a column from the first row to the last. The text of a value that stays is made once.
+/// The cells of a column from the first row to the last.
 struct Cells<'a> {
-    values: Box<dyn Iterator<Item = f64> + 'a>,
-    value: f64,
-    text: String,
+    values: Steps<'a>,
+    /// The unit they are written in, if that is not the one of the values.
+    unit: Option<Unit>,
+}
+
+enum Steps<'a> {
+    Each(std::slice::Iter<'a, f64>),
+    Series(series::Steps<'a>),
 }
 
 impl<'a> Cells<'a> {
     fn of(column: &'a Written<'_>) -> Self {
+        let unit = column.unit.as_ref().map(|unit| unit.unit());
         Self {
-            values: column.in_unit(),
-            value: f64::NAN,
-            text: String::new(),
+            values: match column.values {
+                Values::Each(values) => Steps::Each(values.iter()),
+                Values::Series(series) => Steps::Series(series.steps()),
+            },
+            unit: unit.filter(|unit| !unit.is_si()),
         }
     }
 
-    fn next(&mut self) -> &str {
-        let value = self.values.next().unwrap_or(f64::NAN);
-        if self.text.is_empty() || value.to_bits() != self.value.to_bits() {
-            self.value = value;
-            self.text.clear();
-            push_number(&mut self.text, value);
-        }
-        &self.text
+    /// The number of the next row; `None` where its text is that of the row before.
+    fn step(&mut self) -> Option<f64> {
+        let value = match &mut self.values {
+            Steps::Each(values) => values.next().copied(),
+            Steps::Series(steps) => steps.step(),
+        }?;
+        Some(self.unit.map_or(value, |unit| in_unit(value, unit)))
     }
 }
 
@@ -173,8 +193,8 @@ mod tests {
             assert_eq!(text.parse::<f64>().map(f64::to_bits), Ok(value.to_bits()));
         }
     }
-    use crate::Layout;
     use crate::csv::read;
+    use crate::{Layout, Series};
     use hyde_units::NamedUnit;
 
     fn unit(text: &str) -> NamedUnit {
@@ -193,6 +213,45 @@ mod tests {
         assert_eq!(text, expected);
         let table = read(text.as_bytes(), &Layout::default()).unwrap();
         assert_eq!(table.columns(), columns);
+    }
+
+    #[test]
+    fn what_stays_is_written_in_every_row_of_a_long_file() {
+        let rows = 20_000;
+        let each = |every: u32| (0..rows).map(move |row| f64::from(row / every) * 0.37);
+        let series = [each(1), each(5), each(rows), each(3000)].map(|v| v.collect::<Series>());
+        let time: Vec<f64> = each(1).collect();
+        let of = |name: &'static str, in_unit: &str, values| Written {
+            name: name.into(),
+            unit: Some(Cow::Owned(unit(in_unit))),
+            values,
+        };
+        let series_of = |number: usize| Values::Series(&series[number]);
+        let columns = [
+            of("t", "s", Values::Each(&time)),
+            of("a", "mm", series_of(1)),
+            of("b", "m", series_of(2)),
+            of("b2", "m", series_of(2)),
+            of("c", "m", series_of(0)),
+            of("d", "degC", series_of(3)),
+            of("a2", "mm", series_of(1)),
+        ];
+        let mut text = Vec::new();
+        write_to(&mut text, &columns).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        assert!(text.len() > 10 * AT_ONCE);
+        let plain: Vec<Column> = columns.iter().map(own).collect();
+        assert!(text == write(&plain), "what stays is written otherwise");
+    }
+
+    /// A column with values of its own.
+    fn own(column: &Written<'_>) -> Column {
+        let unit = column.unit.as_ref().unwrap();
+        Column::new(
+            column.name.as_ref(),
+            unit.as_ref().clone(),
+            column.values().into_owned(),
+        )
     }
 
     #[test]
