@@ -36,7 +36,7 @@ mod swept;
 
 pub use assumptions::Assumption;
 pub use bode::{BodeError, frequency_response, frequency_response_watched};
-pub use budget::{BudgetOf, Share};
+pub use budget::{BudgetOf, Estimate, Share};
 pub use compare::{Channel, CompareError, prepared, unwrapped};
 pub use driven_kinds::{RowFault, check_columns};
 pub use flows::{FlowLine, flows};

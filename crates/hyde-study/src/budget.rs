@@ -1,12 +1,19 @@
-//! [`budget`]: which imperfection of a model contributes how much to the measures of an experiment.
+//! [`budget`]: which imperfection of a model contributes how much to the measures of an experiment. Every variant is run at the
+//! tolerances of the experiment and at tighter ones: what these change is no contribution.
 
 use crate::asked::Asked;
 use crate::runs::{How, project_of, solved};
 use crate::{Fault, Loaded, Project, Refused};
-use hyde_compiler::{changed, ideals};
-use hyde_experiment::BudgetOf;
+use hyde_compiler::{Compiled, changed, ideals};
+use hyde_experiment::{BudgetOf, Estimate, Run};
 use hyde_syntax::ast::{Experiment, Ideal};
 use hyde_units::NamedUnit;
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The tighter tolerances, as a part of those of the experiment.
+const TIGHTER: f64 = 0.1;
 
 /// What came out.
 pub struct Budget {
@@ -16,6 +23,8 @@ pub struct Budget {
     pub ideals: Vec<Ideal>,
     /// Each measure with its unit and what it is made of.
     pub measures: Vec<(String, NamedUnit, BudgetOf)>,
+    /// Relative and absolute tolerance of the experiment.
+    pub tolerances: (f64, f64),
 }
 
 /// Why there is no budget: the reason, and which of the runs it is about if it is not the first.
@@ -27,10 +36,38 @@ pub struct NoBudget {
 }
 
 /// The measures of one run, in their order.
-type Measures = Vec<(String, NamedUnit, f64)>;
+type Measures = Vec<(String, NamedUnit, Estimate)>;
 
-/// Runs the experiment as it is, with all ideal, without each imperfection and with it alone. `ready` gets the model before it
-/// is run.
+/// A variant of the model.
+#[derive(Clone, Copy)]
+enum Variant<'m> {
+    AllIdeal,
+    Without(&'m str),
+    Alone(&'m str),
+}
+
+impl Variant<'_> {
+    /// Whether an imperfection is made ideal.
+    fn idealises(self, ideal: &Ideal) -> bool {
+        let own = ideal.name.text.as_str();
+        match self {
+            Self::AllIdeal => true,
+            Self::Without(name) => own == name,
+            Self::Alone(name) => own != name,
+        }
+    }
+
+    fn text(self) -> String {
+        match self {
+            Self::AllIdeal => "with all of the budget ideal".to_owned(),
+            Self::Without(name) => format!("without `{name}`"),
+            Self::Alone(name) => format!("with `{name}` alone"),
+        }
+    }
+}
+
+/// Runs the experiment as it is, with all ideal, without each imperfection and with it alone, each at its tolerances and at
+/// tighter ones; several at once. `how` counts the variants that are done. `ready` gets the model before it is run.
 ///
 /// # Errors
 /// The experiment has no budget, or one of the runs fails.
@@ -47,45 +84,53 @@ pub fn budget(
     let model = project.model.clone();
     let ideals: Vec<Ideal> = ideals(&experiment).cloned().collect();
     let experiment = experiment.name.text;
-    let real = measures(project, how, ready).map_err(first)?;
+    let runs = Runs {
+        load,
+        how,
+        done: AtomicUsize::new(0),
+        count: 2 * ideals.len() + 2,
+    };
+    let (real, tolerances) = runs.measures(&|_| {}, ready).map_err(first)?;
     if real.is_empty() {
         return Err(first(Refused::Asked(format!(
             "`{experiment}` has no `measure`: add the error to be split, `measure Length lag = max(abs(r - s));`"
         ))));
     }
-    let run = |what: String, chosen: &dyn Fn(&Ideal) -> bool| -> Result<Measures, NoBudget> {
-        let found = load().and_then(|mut project| {
+    let each = ideals.iter().map(|ideal| ideal.name.text.as_str());
+    let each = each.flat_map(|name| [Variant::Without(name), Variant::Alone(name)]);
+    let variants: Vec<Variant<'_>> = std::iter::once(Variant::AllIdeal).chain(each).collect();
+    let run = |&variant: &Variant<'_>| {
+        let idealised = |project: &mut Project| {
+            let chosen = |ideal: &Ideal| variant.idealises(ideal);
             project.file = project.file.idealised(&experiment, chosen);
-            measures(project, how, |_| {})
-        });
-        found.map_err(|refused| NoBudget {
-            refused,
-            of: Some(what),
-        })
+        };
+        let found = runs.measures(&idealised, |_| {});
+        found
+            .map(|(measures, _)| measures)
+            .map_err(|refused| NoBudget {
+                refused,
+                of: Some(variant.text()),
+            })
     };
-    let all = run("with all of the budget ideal".to_owned(), &|_| true)?;
-    let mut each = Vec::new();
-    for ideal in &ideals {
-        let name = &ideal.name.text;
-        let without = run(format!("without `{name}`"), &|other| {
-            other.name.text == *name
-        })?;
-        let alone = run(format!("with `{name}` alone"), &|other| {
-            other.name.text != *name
-        })?;
-        each.push((without, alone));
-    }
+    let found = variants.par_iter().with_max_len(1).map(run);
+    // Of several that fail the first one is told.
+    let found: Vec<Result<Measures, NoBudget>> = found.collect();
+    let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
     let measures = real
         .into_iter()
         .enumerate()
         .map(|(number, (name, unit, value))| {
             let of = |measures: &Measures| measures[number].2;
-            let each: Vec<(f64, f64)> = each.iter().map(|(a, b)| (of(a), of(b))).collect();
-            (name, unit, BudgetOf::new(value, of(&all), &each))
+            let each = found[1..]
+                .chunks(2)
+                .map(|both| (of(&both[0]), of(&both[1])));
+            let each: Vec<(Estimate, Estimate)> = each.collect();
+            (name, unit, BudgetOf::new(value, of(&found[0]), &each))
         });
     Ok(Budget {
         title: format!("{experiment} of {model}"),
         measures: measures.collect(),
+        tolerances,
         ideals,
     })
 }
@@ -119,13 +164,70 @@ fn of_experiment(project: &Project) -> Result<Experiment, String> {
     Ok(experiment.clone())
 }
 
-/// Runs, and takes the measures.
-fn measures(
-    project: Project,
-    how: &How,
-    ready: impl FnOnce(&Project),
-) -> Result<Measures, Refused> {
-    let (compiled, run) = solved(project, how, ready)?;
+/// What runs variants, and counts them.
+struct Runs<'s, L> {
+    load: L,
+    how: &'s How,
+    done: AtomicUsize,
+    count: usize,
+}
+
+impl<L: Fn() -> Result<Project, Refused>> Runs<'_, L> {
+    /// The measures of a variant with its tolerances, each with its difference from that at tighter ones. Where the variant
+    /// cannot be run at these, the errors are not known.
+    fn measures(
+        &self,
+        variant: &dyn Fn(&mut Project),
+        ready: impl FnOnce(&Project),
+    ) -> Result<(Measures, (f64, f64)), Refused> {
+        let own = How {
+            reached: Arc::default(),
+            ..self.how.clone()
+        };
+        let (compiled, run) = self.run(variant, &own, ready)?;
+        let measures = valued(&run)?;
+        let (rtol, atol) = run.tolerances;
+        let tighter = How {
+            rtol: Some(TIGHTER * rtol),
+            atol: Some(TIGHTER * atol),
+            ..own
+        };
+        let tighter = self.run(variant, &tighter, |_| {});
+        let tighter = match tighter.and_then(|(_, run)| valued(&run)) {
+            Ok(tighter) => Some(tighter),
+            Err(refused) if refused.fault() == Fault::Interrupted => return Err(refused),
+            Err(_) => None,
+        };
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.how.reached.set(done as f64, self.count as f64);
+        let known = compiled.program.experiment.measures.iter();
+        let known = known.filter(|known| !known.expectation);
+        let all = measures.into_iter().zip(known).enumerate();
+        let all = all.map(|(number, ((name, value), known))| {
+            let tighter = tighter.as_ref().map_or(f64::NAN, |own| own[number].1);
+            (
+                name,
+                known.unit.clone(),
+                Estimate::new(value, tighter, rtol),
+            )
+        });
+        Ok((all.collect(), run.tolerances))
+    }
+
+    fn run(
+        &self,
+        variant: &dyn Fn(&mut Project),
+        how: &How,
+        ready: impl FnOnce(&Project),
+    ) -> Result<(Compiled, Run), Refused> {
+        let mut project = (self.load)()?;
+        variant(&mut project);
+        solved(project, how, ready)
+    }
+}
+
+/// The measures of a run by name.
+fn valued(run: &Run) -> Result<Vec<(String, f64)>, Refused> {
     let mut missing = run
         .measures
         .iter()
@@ -136,12 +238,7 @@ fn measures(
         let reason = format!("`{}` has no value{why}", measure.name);
         return Err(Refused::Because(reason, Fault::Expectation));
     }
-    let both = run
-        .measures
-        .iter()
-        .zip(&compiled.program.experiment.measures);
-    let measures = both.filter(|(measure, _)| !measure.expectation);
-    Ok(measures
-        .map(|(measure, known)| (measure.name.clone(), known.unit.clone(), measure.value))
-        .collect())
+    let measures = run.measures.iter().filter(|measure| !measure.expectation);
+    let measures = measures.map(|measure| (measure.name.clone(), measure.value));
+    Ok(measures.collect())
 }

@@ -34,3 +34,14 @@ pub enum Refused {
         fault: Fault,
     },
 }
+
+impl Refused {
+    /// What is at fault.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::Asked(_) => Fault::Asked,
+            Self::Because(_, fault) | Self::Model { fault, .. } => *fault,
+        }
+    }
+}

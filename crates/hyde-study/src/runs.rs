@@ -12,6 +12,8 @@ use std::sync::atomic::AtomicBool;
 pub struct How {
     /// Relative tolerance, instead of that of the experiment.
     pub rtol: Option<f64>,
+    /// Absolute tolerance, likewise.
+    pub atol: Option<f64>,
     /// Set by whoever wants them to end early.
     pub interrupted: Arc<AtomicBool>,
     /// How far the present run is.
@@ -48,6 +50,7 @@ pub fn solved(
     let options = Options {
         set: project.set(),
         rtol: how.rtol,
+        atol: how.atol,
         interrupted: how.interrupted.clone(),
         reached: how.reached.clone(),
         ..Options::default()

@@ -8,6 +8,7 @@ use crate::project::{self, Project, Told as _, complain, print_error, print_outp
 use crate::watch::Watch;
 use hyde_present::budget::{csv, json, text};
 use hyde_study::budget::{Budget, budget as made};
+use std::sync::Arc;
 
 /// Runs the experiment as it is, with all ideal, without each imperfection and with it alone, and prints what every measure is made of.
 pub(crate) fn budget(args: &BudgetArgs) -> Exit {
@@ -21,7 +22,11 @@ fn told(args: &BudgetArgs) -> Result<(), Exit> {
     let model = &args.model;
     let (asked, loaded) = (project::asked(model)?, project::parsed(model)?);
     let how = how();
-    let watch = Watch::of_run(model.quiet, &how.reached);
+    let reached = Arc::clone(&how.reached);
+    let watch = Watch::new(model.quiet, move || match reached.get() {
+        (done, all) if all > 0.0 => format!("{done} of {all} runs"),
+        _ => "running the model as it is".to_owned(),
+    });
     let ready = |project: &Project| project.print_warnings(model);
     let found = made(&loaded, &asked, &how, ready);
     drop(watch);

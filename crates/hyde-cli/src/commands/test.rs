@@ -88,6 +88,7 @@ fn experiment(loaded: &Loaded, args: &ModelArgs, tests: &mut Vec<Tested>) -> Res
 pub(crate) fn how() -> How {
     How {
         rtol: None,
+        atol: None,
         interrupted: interrupted(),
         reached: Arc::default(),
     }

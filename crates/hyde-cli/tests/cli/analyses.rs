@@ -164,8 +164,114 @@ fn a_budget_has_the_shares_that_the_closed_form_has() {
         assert!(near(number(&found["alone"]), alone), "{found} not {alone}");
     }
     assert!(near(number(&way["left"]), expected(0.0, 2e4)), "{way}");
+    // How far a number may be off is more than it is off, and no more than the tolerance lets expect.
+    for error in [&way["value_error"], &way["shares"][0]["share_error"]] {
+        let error = number(error);
+        assert!((1e-12..1e-5).contains(&error), "{error}");
+    }
     let csv = read(&folder.path("out/budget.csv"));
     assert_eq!(csv.lines().count(), 5, "{csv}");
+}
+
+/// At a loose tolerance a budget has few digits. Those that it shows are those of the closed form.
+#[test]
+fn a_budget_shows_the_digits_that_are_right() {
+    let folder = Folder::new();
+    let exact = |friction: f64, c: f64| (100.0 - friction - 400.0 * 100.0 / c) / c;
+    let (real, ideal) = (exact(20.0, 1.3e4), exact(0.0, 2.3e4));
+    let expected = [
+        ("way", vec![real]),
+        (
+            "spring",
+            vec![real - exact(20.0, 2.3e4), exact(0.0, 1.3e4) - ideal],
+        ),
+        (
+            "rubbing",
+            vec![real - exact(0.0, 1.3e4), exact(20.0, 2.3e4) - ideal],
+        ),
+        ("left", vec![ideal]),
+    ];
+    let stiffer = PULLED
+        .replace("= 1e4", "= 1.3e4")
+        .replace("= 2e4", "= 2.3e4");
+    let (mut fewest, mut most) = (usize::MAX, 0);
+    for rtol in ["1e-2", "1e-3", "1e-4", "1e-6"] {
+        let pulled = stiffer.replace("ida(rtol = 1e-8)", &format!("ida(rtol = {rtol})"));
+        let model = folder.file("pulled.hyde", &pulled);
+        let output = hyde(&["budget", &model]);
+        assert_eq!(status(&output), 0, "{}", errors(&output));
+        let printed = text(&output);
+        for (name, values) in &expected {
+            let line = printed.lines().find(|line| line.trim().starts_with(name));
+            let found = lengths(line.unwrap());
+            assert_eq!(found.len(), values.len(), "{printed}");
+            for ((value, last_digit, digits), exact) in found.into_iter().zip(values) {
+                (fewest, most) = (fewest.min(digits), most.max(digits));
+                let off = (value - exact).abs();
+                assert!(off <= last_digit, "{name}: {exact} at {rtol} in\n{printed}");
+            }
+        }
+    }
+    assert!(fewest < 3 && most == 4, "{fewest} to {most} digits");
+}
+
+/// The lengths of a line in m, each with the size of its last digit and the number of its digits.
+fn lengths(line: &str) -> Vec<(f64, f64, usize)> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let units = [("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)];
+    let length = |pair: &[&str]| {
+        let (_, scale) = units.iter().find(|(unit, _)| *unit == pair[1])?;
+        let value: f64 = pair[0].parse().ok()?;
+        // Zeros at the end of a whole number stand for digits that are not known.
+        let whole = pair[0].trim_end_matches('0').len();
+        let places = match pair[0].split_once('.') {
+            Some((_, behind)) => behind.len() as i32,
+            None => whole as i32 - pair[0].len() as i32,
+        };
+        let digits = pair[0].trim_start_matches(['-', '0', '.']);
+        let digits = digits.trim_end_matches('0').replace('.', "");
+        let last = 10_f64.powi(-places);
+        Some((value * scale, last * scale, digits.len()))
+    };
+    words.windows(2).filter_map(length).collect()
+}
+
+const WARM: &str = r#"package warm "a winding that gets warm";
+import SI.*;
+
+type Celsius = Real [degC];
+
+model Winding
+  parameter Power P = 60 [W], hum = 30 [W];
+  parameter Celsius around = 20 [degC];
+  Celsius T(start = 20 [degC]);
+equation
+  10 [s]*der(T) = around - T + 0.5 [K/W]*(P + hum);
+end Winding;
+
+experiment warm of Winding
+  measure Celsius hot = last(T);
+  budget current(P = 0), iron(hum = 0);
+  solve auto(rtol = 1e-8) stop 300 [s];
+end warm;
+"#;
+
+/// A share of a temperature is a difference, in K: 30 K, not -243 degC.
+#[test]
+fn shares_of_a_temperature_are_differences() {
+    let folder = Folder::new();
+    let output = hyde(&["budget", &folder.file("warm.hyde", WARM)]);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let printed = text(&output);
+    for (name, shown) in [
+        ("hot", "hot = 65 degC"),
+        ("current", " 30 K "),
+        ("iron", " 15 K "),
+        ("left", " 20 degC "),
+    ] {
+        let line = printed.lines().find(|line| line.trim().starts_with(name));
+        assert!(line.unwrap().contains(shown), "{printed}");
+    }
 }
 
 #[test]
