@@ -57,7 +57,7 @@ codes! {
     UnitMismatch "E0301" "two sides have different dimensions";
     BadUnit "E0302" "a unit cannot be read";
     AngleMismatch "E0303" "two sides differ only in the angle";
-    ZeroPoint "E0304" "a temperature with an offset zero point is added as a difference";
+    ZeroPoint "E0304" "a temperature with an offset zero point is used as a difference";
     BadConnection "E0401" "incompatible connectors are connected";
     UnknownModification "E0402" "a modification has no target";
     FinalModified "E0403" "a final parameter is modified";

@@ -26,7 +26,7 @@ mod variable;
 pub(crate) use domain::domain_named;
 pub(crate) use host::{host_of, written};
 pub(crate) use making::{Making, Offer, Wrap};
-pub(crate) use quantity::{quantity, type_unit};
+pub(crate) use quantity::{literal_unit, quantity, type_unit};
 pub(crate) use tree::InstanceTree;
 
 use crate::foreign;

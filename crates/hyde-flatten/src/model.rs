@@ -113,6 +113,12 @@ impl<'a, 'd> Model<'a, 'd> {
         self.diagnostics.push(diagnostic);
     }
 
+    pub(crate) fn report_any(&mut self, doubt: Option<Diagnostic>) {
+        if let Some(doubt) = doubt {
+            self.report(doubt);
+        }
+    }
+
     /// The clock of an instance, if it still has one.
     pub(crate) fn clock_of(&self, instance: InstanceId) -> Option<ClockId> {
         let declared = self.tree[instance].clock?;

@@ -1,13 +1,14 @@
 //! Temperatures with a zero point of their own: the difference of two of them is in K.
 //!
 //! Inside there are kelvins alone, and `20 [degC]` is 293.15 K. So a difference that is declared in degC would be shown
-//! 273.15 too low, and `T + 5 [degC]` adds 278.15 K.
+//! 273.15 too low, `T + 5 [degC]` adds 278.15 K, `2*5 [degC]` is 556.3 K, and `T1 - T2 > 5 [degC]` is never true.
 
 use crate::instance::{Typed, VariableNotes};
 use crate::refusals::dimensions as refused;
 use crate::shown::quantity_of;
 use hyde_diag::{Diagnostic, Sources};
 use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
+use hyde_units::{Dimension, NamedUnit, significant};
 
 /// What is known of the zero point of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,11 @@ impl Zero {
             _ if own => Self::Own,
             _ => Self::Open,
         }
+    }
+
+    /// The zero point of one of two values.
+    pub(crate) fn of_either(a: Self, b: Self) -> Self {
+        if a == Self::Open { b } else { a }
     }
 
     /// The zero point of what is read: that of its declared unit.
@@ -56,17 +62,91 @@ pub(crate) fn added_as_difference(
     if op == BinaryOp::Sub {
         return None;
     }
-    let (literal, _) = [(b, a), (a, b)].into_iter().find(|(literal, other)| {
-        let is_literal = flat.exprs.as_constant(literal.id).is_some();
-        literal.zero == Zero::Own && is_literal && other.zero != Zero::Difference
-    })?;
-    let text = sources.text(literal.span);
-    let number = text.split('[').next().unwrap_or("").trim();
-    let unit = literal
-        .dim
-        .as_known()
-        .map_or_else(String::new, |dim| dim.usual_unit());
-    Some(refused::zero_point_added(literal.span, number, &unit))
+    let of_literal = |(literal, other): (&Typed, &Typed)| {
+        let may = literal.zero == Zero::Own && other.zero != Zero::Difference;
+        let text = may.then(|| as_difference(literal, sources, flat));
+        Some((literal.span, text??))
+    };
+    let (span, text) = of_literal((b, a)).or_else(|| of_literal((a, b)))?;
+    Some(refused::zero_point_counts(
+        "added as a difference",
+        span,
+        &text,
+    ))
+}
+
+/// What to say of a literal in degC that a number multiplies: twice 10 degC are 566.3 K.
+pub(crate) fn scaled(
+    op: BinaryOp,
+    (a, b): (&Typed, &Typed),
+    sources: &Sources,
+    flat: &FlatModel,
+) -> Option<Diagnostic> {
+    let of_literal = |(literal, number): (&Typed, &Typed)| {
+        let is_number = number
+            .dim
+            .as_known()
+            .is_some_and(Dimension::is_dimensionless);
+        let may = literal.zero == Zero::Own && is_number;
+        let text = may.then(|| as_difference(literal, sources, flat));
+        Some((literal.span, text??))
+    };
+    let swapped = || (op == BinaryOp::Mul).then(|| of_literal((b, a))).flatten();
+    let (span, text) = of_literal((a, b)).or_else(swapped)?;
+    Some(refused::zero_point_counts(
+        "multiplied by a number",
+        span,
+        &text,
+    ))
+}
+
+/// What to say of a literal in degC that is the step of a grid.
+pub(crate) fn as_step(step: &Typed, sources: &Sources, flat: &FlatModel) -> Option<Diagnostic> {
+    let may = step.zero == Zero::Own;
+    let text = may.then(|| as_difference(step, sources, flat))??;
+    Some(refused::zero_point_counts(
+        "the step of a grid",
+        step.span,
+        &text,
+    ))
+}
+
+/// What to say of a difference that is held against a temperature with a zero point: that is 273.15 K too high.
+pub(crate) fn beside_difference(
+    a: &Typed,
+    b: &Typed,
+    sources: &Sources,
+    flat: &FlatModel,
+) -> Option<Diagnostic> {
+    let (difference, own) = match (a.zero, b.zero) {
+        (Zero::Difference, Zero::Own) => (a, b),
+        (Zero::Own, Zero::Difference) => (b, a),
+        _ => return None,
+    };
+    let help = match as_difference(own, sources, flat) {
+        Some(text) => format!("write `{text}` for a difference"),
+        None => {
+            let unit = own.dim.as_known().map(|dim| dim.usual_unit());
+            format!(
+                "declare `{}` in {}, without a zero point, if it is a difference",
+                sources.text(own.span),
+                unit.unwrap_or_default()
+            )
+        }
+    };
+    Some(refused::beside_difference(difference.span, own.span, &help))
+}
+
+/// The text of a literal as a difference: `5 [K]` of `5 [degC]` and of `9 [degF]`; `None` of what is no literal.
+fn as_difference(literal: &Typed, sources: &Sources, flat: &FlatModel) -> Option<String> {
+    flat.exprs.as_constant(literal.id)?;
+    let (number, unit) = sources.text(literal.span).split_once('[')?;
+    let unit = NamedUnit::parse(unit.split(']').next()?.trim())
+        .ok()?
+        .unit();
+    let number: f64 = number.trim().parse().ok()?;
+    let si = significant(unit.difference_to_si(number), 10);
+    Some(format!("{si} [{}]", unit.dimension.usual_unit()))
 }
 
 /// What is set to a difference is shown as one: in K where its type says degC.

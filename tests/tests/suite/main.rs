@@ -51,6 +51,7 @@ mod own_sites;
 mod pairs;
 mod paper;
 mod points;
+mod ranges;
 mod reactions;
 mod rectifier;
 mod reductions;

@@ -105,7 +105,7 @@ pub(crate) fn type_unit<'a>(
 }
 
 /// The unit of a literal, possibly negative.
-fn literal_unit(expr: &Expr) -> Option<&ast::UnitText> {
+pub(crate) fn literal_unit(expr: &Expr) -> Option<&ast::UnitText> {
     match &expr.kind {
         ExprKind::Number(_, unit) => unit.as_ref(),
         ExprKind::Unary(_, inner) => literal_unit(inner),

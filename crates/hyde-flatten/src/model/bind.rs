@@ -5,6 +5,7 @@ mod elements;
 use crate::allowed::check_whole;
 use crate::equation::make_traces_of_equations;
 use crate::event_clock::{event_clock, is_event_clock};
+use crate::instantiate::literal_unit;
 use crate::words::short;
 use crate::wrap::wrapped;
 use crate::zero;
@@ -99,8 +100,7 @@ impl<'a> Model<'a, '_> {
             self.value(&range.to, &scope),
         );
         let mut bounds = vec![to.clone()];
-        if let (true, hyde_syntax::ast::ExprKind::Number(_, Some(unit))) =
-            (from.bare, &range.to.kind)
+        if let (true, Some(unit)) = (from.bare, literal_unit(&range.to))
             && let (Ok(unit), Some(number)) = (
                 hyde_units::NamedUnit::parse(&unit.text),
                 self.flat.exprs.as_constant(from.id),

@@ -16,7 +16,7 @@ use crate::meaning;
 use crate::model::Model;
 use crate::refusals::values as refused;
 use crate::turns::Turns;
-use crate::zero::Zero;
+use crate::zero::{self, Zero};
 use hyde_diag::Span;
 use hyde_syntax::ast::{Expr, ExprKind, UnitText};
 use hyde_units::{AngleExponent, NamedUnit, UnitError};
@@ -55,6 +55,7 @@ impl<'a> Model<'a, '_> {
                     let branch = self.lower(branch, scope);
                     self.same_kind(&branch, &value);
                     self.agree(&branch, &value, "the branches have", scope.instance);
+                    self.same_zero(&branch, &value);
                     let id = self.flat.exprs.if_else(condition, branch.id, value.id);
                     let dim = sum_dim(&branch.dim, &value.dim);
                     value = Typed {
@@ -62,7 +63,7 @@ impl<'a> Model<'a, '_> {
                         dim,
                         bare: branch.bare && value.bare,
                         turns: Turns::Plain,
-                        zero: branch.zero,
+                        zero: Zero::of_either(branch.zero, value.zero),
                         span,
                         truth: value.truth,
                     };
@@ -141,6 +142,16 @@ impl<'a> Model<'a, '_> {
         if a.truth != b.truth && a.dim != Dim::Any && b.dim != Dim::Any {
             self.report(refused::kinds_differ((a.span, a.truth), (b.span, b.truth)));
         }
+    }
+
+    /// Reports a difference of temperatures beside one that counts from a zero point.
+    pub(crate) fn same_zero(&mut self, a: &Typed, b: &Typed) {
+        self.report_any(zero::beside_difference(
+            a,
+            b,
+            self.input.sources,
+            &self.flat,
+        ));
     }
 
     pub(crate) fn not_constant(&mut self, what: &str, span: Span) {

@@ -65,9 +65,15 @@ diagnostics! {
         note "units such as mm/rev are converted to m/rad when they are read";
         help "remove the `2*pi`";
     }
-    fn zero_point_added(literal: Span, number: &str, unit: &str) = warning ZeroPoint {
-        "a temperature with its zero point is added as a difference"; at literal, "adds its zero point as well";
-        help "write `{number} [{unit}]` for a difference";
+    fn zero_point_counts(how: &str, literal: Span, difference: &str) = warning ZeroPoint {
+        "a temperature with its zero point is {how}"; at literal, "its zero point counts as well";
+        help "write `{difference}` for a difference";
+    }
+    fn beside_difference(difference: Span, own: Span, help: &str) = warning ZeroPoint {
+        "a difference of temperatures beside a temperature with its zero point";
+        at own, "counts from a zero point that is not 0 K";
+        at difference, "a difference, in K";
+        help "{help}";
     }
 }
 

@@ -64,6 +64,10 @@ diagnostics! {
         at declared, "`fixed = false`: an initial equation determines it";
         help "give it a value and remove `fixed = false`: a size, a branch or a mesh depends on it";
     }
+    fn compared_twice(both: Span, repair: &str) = error WrongType {
+        "a number is compared with what is true or false"; at both, "a comparison has two sides";
+        help "write `{repair}`";
+    }
     fn compared_for_equality(sign: &str, here: Span) = error WrongType {
         "`{sign}` of continuous values: they are hardly ever equal"; at here, "compares values that change continuously";
         help "compare with `<` or `>`; within a distance, `abs(x - y) < 1e-6`";

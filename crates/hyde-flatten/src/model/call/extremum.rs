@@ -3,6 +3,7 @@
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::model::lower::sum_dim;
+use crate::zero::Zero;
 use hyde_diag::Span;
 use hyde_ir::{BinaryOp, ExprId};
 use hyde_syntax::ast::Expr;
@@ -29,8 +30,12 @@ impl<'a> Model<'a, '_> {
             },
             scope.instance,
         );
+        self.same_zero(&a, &b);
         let id = self.choose(least, a.id, b.id, scope.setting);
-        self.typed(id, sum_dim(&a.dim, &b.dim), span)
+        Typed {
+            zero: Zero::of_either(a.zero, b.zero),
+            ..self.typed(id, sum_dim(&a.dim, &b.dim), span)
+        }
     }
 
     /// The lesser or greater of two; in a continuous equation the change from one to the other is an event.
@@ -54,8 +59,13 @@ impl<'a> Model<'a, '_> {
         );
         self.agree(&x, &low, "`clamp` compares", scope.instance);
         self.agree(&x, &high, "`clamp` compares", scope.instance);
+        self.same_zero(&x, &low);
+        self.same_zero(&x, &high);
         let below = self.choose(false, x.id, low.id, scope.setting);
         let id = self.choose(true, below, high.id, scope.setting);
-        self.typed(id, sum_dim(&x.dim, &low.dim), span)
+        Typed {
+            zero: x.zero,
+            ..self.typed(id, sum_dim(&x.dim, &low.dim), span)
+        }
     }
 }

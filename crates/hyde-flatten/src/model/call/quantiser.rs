@@ -4,6 +4,7 @@ use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::calls as refused;
+use crate::zero;
 use hyde_diag::Span;
 use hyde_ir::{BinaryOp, UnaryOp};
 use hyde_syntax::ast::Expr;
@@ -31,6 +32,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         self.agree(&a, &b, "the step and the value are", scope.instance);
+        self.report_any(zero::as_step(&b, self.input.sources, &self.flat));
         let arena = &mut self.flat.exprs;
         let id = match name {
             "floor_to" | "round_to" if self.input.additions.shifts_quantisers() => {
@@ -56,7 +58,10 @@ impl<'a> Model<'a, '_> {
                 arena.minus(a.id, part)
             }
         };
-        self.typed(id, a.dim, span)
+        Typed {
+            zero: a.zero,
+            ..self.typed(id, a.dim, span)
+        }
     }
 
     fn number_one(&mut self, span: Span) -> Typed {

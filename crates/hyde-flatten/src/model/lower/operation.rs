@@ -9,7 +9,8 @@ use crate::turns::{Sides, Turns};
 use crate::zero::{self, Zero};
 use hyde_diag::Span;
 use hyde_ir::{BinaryOp, Expr as Ir, UnaryOp, VariableKind};
-use hyde_syntax::ast::{Binary, Expr, Unary};
+use hyde_syntax::ast::{Binary, Expr, ExprKind, Unary};
+use hyde_syntax::format_expression;
 use hyde_units::Exponent;
 
 impl<'a> Model<'a, '_> {
@@ -34,6 +35,10 @@ impl<'a> Model<'a, '_> {
                 ..self.value(inner, scope)
             },
             Unary::Negative => {
+                // `-5 [degC]` is a temperature below the zero point of its unit, not 5 degC with its sign changed.
+                if let ExprKind::Number(value, unit) = &inner.kind {
+                    return self.number(-value, unit.as_ref(), span);
+                }
                 let value = self.value(inner, scope);
                 let id = self.flat.exprs.negative(value.id);
                 Typed {
@@ -87,8 +92,10 @@ impl<'a> Model<'a, '_> {
                 };
                 let agree = self.agree(&a, &b, what, scope.instance);
                 let doubt = zero::added_as_difference(ir, (&a, &b), self.input.sources, &self.flat);
-                if let Some(doubt) = doubt {
-                    self.report(doubt);
+                self.report_any(doubt);
+                // A temperature less a difference is one, a difference less a temperature is nothing.
+                if ir == BinaryOp::Sub && a.zero == Zero::Difference {
+                    self.same_zero(&a, &b);
                 }
                 let id = self.flat.exprs.binary(ir, a.id, b.id);
                 // A sum that is wrong already is not held against what it is compared with.
@@ -118,6 +125,8 @@ impl<'a> Model<'a, '_> {
                 } else {
                     BinaryOp::Mul
                 };
+                let doubt = zero::scaled(ir, (&a, &b), self.input.sources, &self.flat);
+                self.report_any(doubt);
                 let id = self.flat.exprs.binary(ir, a.id, b.id);
                 Typed {
                     bare: a.bare && b.bare,
@@ -138,8 +147,14 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) -> Typed {
         let (a, b) = (self.lower(left, scope), self.lower(right, scope));
-        self.same_kind(&a, &b);
-        self.agree(&a, &b, "a comparison of", scope.instance);
+        match between(op, left, right).filter(|_| !b.truth) {
+            Some(both) => self.report(refused::compared_twice(span, &both)),
+            None => {
+                self.same_kind(&a, &b);
+                self.agree(&a, &b, "a comparison of", scope.instance);
+                self.same_zero(&a, &b);
+            }
+        }
         let continuous = matches!(scope.setting, Setting::Equation | Setting::Condition);
         if continuous
             && matches!(op, BinaryOp::Eq | BinaryOp::Ne)
@@ -226,4 +241,21 @@ impl<'a> Model<'a, '_> {
             ..self.typed(id, dim.composed(), span)
         }
     }
+}
+
+/// The two comparisons that `0 < x < 1` means: `0 < x and x < 1`.
+fn between(op: BinaryOp, left: &Expr, right: &Expr) -> Option<String> {
+    let ExprKind::Binary(Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge, _, middle) = &left.kind
+    else {
+        return None;
+    };
+    let signs = [
+        (BinaryOp::Lt, "<"),
+        (BinaryOp::Le, "<="),
+        (BinaryOp::Gt, ">"),
+        (BinaryOp::Ge, ">="),
+    ];
+    let (_, sign) = signs.into_iter().find(|(known, _)| *known == op)?;
+    let [first, middle, last] = [left, middle, right].map(format_expression);
+    Some(format!("{first} and {middle} {sign} {last}"))
 }
