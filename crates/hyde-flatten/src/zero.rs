@@ -125,16 +125,24 @@ pub(crate) fn beside_difference(
     };
     let help = match as_difference(own, sources, flat) {
         Some(text) => format!("write `{text}` for a difference"),
-        None => {
-            let unit = own.dim.as_known().map(|dim| dim.usual_unit());
-            format!(
-                "declare `{}` in {}, without a zero point, if it is a difference",
-                sources.text(own.span),
-                unit.unwrap_or_default()
-            )
-        }
+        None => without_zero_point(own, sources),
     };
     Some(refused::beside_difference(difference.span, own.span, &help))
+}
+
+/// What to say of a noise or a band that counts from a zero point.
+pub(crate) fn as_width(width: &Typed, sources: &Sources) -> Option<Diagnostic> {
+    let own = width.zero == Zero::Own;
+    own.then(|| refused::zero_point_of_width(width.span, &without_zero_point(width, sources)))
+}
+
+fn without_zero_point(own: &Typed, sources: &Sources) -> String {
+    let unit = own.dim.as_known().map(|dim| dim.usual_unit());
+    format!(
+        "declare `{}` in {}, without a zero point, if it is a difference",
+        sources.text(own.span),
+        unit.unwrap_or_default()
+    )
 }
 
 /// The text of a literal as a difference: `5 [K]` of `5 [degC]` and of `9 [degF]`; `None` of what is no literal.

@@ -31,7 +31,7 @@ pub(super) fn measured<'a>(model: &mut Model<'a, '_>, channel: &'a Channel, root
     let left = model.typed(value.id, dim.clone(), channel.signal.span);
     model.agree(&left, &value, "the record and the model are", root);
     let noise = channel.noise.as_ref().map(|noise| {
-        let typed = model.value(noise, &scope.with(Setting::Parameter));
+        let typed = model.width(noise, &scope.with(Setting::Parameter));
         model.agree(&typed, &value, "the noise and the value are", root);
         typed.id
     });

@@ -89,7 +89,7 @@ pub(super) fn noise_of_column<'a>(
         return;
     };
     let (driven, value) = by;
-    let sd = model.value(noise, &Scope::new(root, Setting::Parameter));
+    let sd = model.width(noise, &Scope::new(root, Setting::Parameter));
     model.agree(&sd, driven, "the noise and what is driven are", root);
     let mut steps = Vec::new();
     let column = match reads_a_column(&model.flat, value) {

@@ -144,6 +144,23 @@ impl<'a> Model<'a, '_> {
         }
     }
 
+    /// Lowers what is no point of a scale but a width: a noise, a band. `0.5 [degC]` is 0.5 K there.
+    pub(crate) fn width(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Typed {
+        let typed = self.value(expr, scope);
+        if let ExprKind::Number(value, Some(unit)) = &expr.kind
+            && let Ok(unit) = NamedUnit::parse(&unit.text)
+        {
+            let width = unit.unit().difference_to_si(*value);
+            return Typed {
+                id: self.flat.exprs.constant(width),
+                zero: Zero::Open,
+                ..typed
+            };
+        }
+        self.report_any(zero::as_width(&typed, self.input.sources));
+        typed
+    }
+
     /// Reports a difference of temperatures beside one that counts from a zero point.
     pub(crate) fn same_zero(&mut self, a: &Typed, b: &Typed) {
         self.report_any(zero::beside_difference(

@@ -62,7 +62,7 @@ impl<'a> Model<'a, '_> {
                 Dim::NUMBER.divide(&time),
             ),
             ("settling", Some(band)) => {
-                let band = self.value(band, &over_run);
+                let band = self.width(band, &over_run);
                 self.agree(&inner, &band, "`settling` compares", scope.instance);
                 // How far it is outside the band.
                 let arena = &mut self.flat.exprs;
