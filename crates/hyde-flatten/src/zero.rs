@@ -1,7 +1,7 @@
 //! Temperatures with a zero point of their own: the difference of two of them is in K.
 //!
 //! Inside there are kelvins alone, and `20 [degC]` is 293.15 K. So a difference that is declared in degC would be shown
-//! 273.15 too low, `T + 5 [degC]` adds 278.15 K, `2*5 [degC]` is 556.3 K, and `T1 - T2 > 5 [degC]` is never true.
+//! 273.15 too low, `T + 5 [degC]` adds 278.15 K, `2*5 [degC]` is 556.3 K, and `T1 - T2 > 5 [degC]` waits for 278.15 K.
 
 use crate::instance::{Typed, VariableNotes};
 use crate::refusals::dimensions as refused;
