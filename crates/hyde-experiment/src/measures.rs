@@ -1,6 +1,6 @@
 //! Measures and expectations: numbers of a run, and what must hold of them.
 
-use hyde_program::Program;
+use hyde_program::{Program, ReductionKind};
 use hyde_sim::{Reduced, Results};
 use hyde_units::significant;
 
@@ -15,11 +15,11 @@ pub struct MeasureValue {
     pub expectation: bool,
     /// Whether it does; of a mere measure false where a signal is not a number.
     pub holds: bool,
-    /// Why there is no value.
+    /// Why there is no finite value, or why an expectation does not hold.
     pub missing: Option<Missing>,
 }
 
-/// Why a measure has no value.
+/// Why a measure has no finite value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Missing {
     /// A variable that it reads is not a number.
@@ -31,7 +31,11 @@ pub enum Missing {
     },
     /// What it reads has no value, as written: a condition that never holds, a signal without a resonance.
     Nothing(String),
-    /// Its own arithmetic: 0/0.
+    /// What it reads is infinite, as written.
+    Infinite(String),
+    /// What it reads is infinite because the signal does not settle before the end of the run, as written.
+    Unsettled(String),
+    /// Its own arithmetic: 0/0, 1/0.
     Undefined,
 }
 
@@ -45,7 +49,11 @@ impl Missing {
                 format!("`{variable}` is not a number, first at {t} s")
             }
             Self::Nothing(text) => format!("`{text}` has no value in this run"),
-            Self::Undefined => "its arithmetic gives no number, like 0/0".to_owned(),
+            Self::Infinite(text) => format!("`{text}` is infinite"),
+            Self::Unsettled(text) => {
+                format!("`{text}` is infinite: the signal is not in its band at the end of the run")
+            }
+            Self::Undefined => "its arithmetic gives no finite number, like 0/0 or 1/0".to_owned(),
         }
     }
 }
@@ -80,8 +88,23 @@ pub(crate) fn measures(
             }),
             Reduced::Value(_) | Reduced::Nothing => None,
         });
-        if bad.is_some() || !value.is_nan() {
+        let in_doubt = !value.is_finite() || (measure.expectation && value <= 0.5);
+        if bad.is_some() || !in_doubt {
             return bad;
+        }
+        let infinite = reads()
+            .find(|(_, reduced)| matches!(reduced, Reduced::Value(value) if value.is_infinite()));
+        if let Some((number, _)) = infinite {
+            let reduction = &experiment.reductions[number];
+            let text = reduction.text.clone();
+            let settles = matches!(reduction.kind, ReductionKind::Settling);
+            return Some(match settles {
+                true => Missing::Unsettled(text),
+                false => Missing::Infinite(text),
+            });
+        }
+        if value.is_finite() {
+            return None;
         }
         let nothing = reads().find(|(_, reduced)| **reduced == Reduced::Nothing);
         let text = nothing.map(|(number, _)| experiment.reductions[number].text.clone());

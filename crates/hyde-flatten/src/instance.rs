@@ -292,5 +292,7 @@ pub(crate) struct Typed {
     pub(crate) turns: Turns,
     /// What is known of its zero point.
     pub(crate) zero: Zero,
+    /// Of a literal that counts from a zero point: what it is as a difference, SI. 5 of `5 [degC]`.
+    pub(crate) difference: Option<f64>,
     pub(crate) span: Span,
 }

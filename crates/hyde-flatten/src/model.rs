@@ -177,6 +177,7 @@ impl<'a, 'd> Model<'a, 'd> {
             bare: false,
             turns: Turns::Plain,
             zero: Zero::Open,
+            difference: None,
             span,
         }
     }
@@ -189,6 +190,7 @@ impl<'a, 'd> Model<'a, 'd> {
             bare: false,
             turns: Turns::Plain,
             zero: Zero::Open,
+            difference: None,
             span,
         }
     }

@@ -1,8 +1,9 @@
 //! Words of messages: names in short, a few of them, the one that was meant.
 
-/// The last part of a dotted name.
+/// The last part of a dotted name; all of a reduction, `max(table.s)`, which is named as it is written.
 pub(crate) fn short(name: &str) -> &str {
-    name.rsplit('.').next().unwrap_or(name)
+    let last = name.rsplit('.').next();
+    last.filter(|_| !name.contains('(')).unwrap_or(name)
 }
 
 /// A few names for a message.

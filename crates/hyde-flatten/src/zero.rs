@@ -8,7 +8,7 @@ use crate::refusals::dimensions as refused;
 use crate::shown::quantity_of;
 use hyde_diag::{Diagnostic, Sources};
 use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
-use hyde_units::{Dimension, NamedUnit, significant};
+use hyde_units::{Dimension, significant};
 
 /// What is known of the zero point of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,18 +53,13 @@ impl Zero {
 }
 
 /// What to say of a literal in degC that is added: its zero point is added as well.
-pub(crate) fn added_as_difference(
-    op: BinaryOp,
-    (a, b): (&Typed, &Typed),
-    sources: &Sources,
-    flat: &FlatModel,
-) -> Option<Diagnostic> {
+pub(crate) fn added_as_difference(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnostic> {
     if op == BinaryOp::Sub {
         return None;
     }
     let of_literal = |(literal, other): (&Typed, &Typed)| {
         let may = literal.zero == Zero::Own && other.zero != Zero::Difference;
-        let text = may.then(|| as_difference(literal, sources, flat));
+        let text = may.then(|| as_difference(literal));
         Some((literal.span, text??))
     };
     let (span, text) = of_literal((b, a)).or_else(|| of_literal((a, b)))?;
@@ -76,19 +71,14 @@ pub(crate) fn added_as_difference(
 }
 
 /// What to say of a literal in degC that a number multiplies: twice 10 degC are 566.3 K.
-pub(crate) fn scaled(
-    op: BinaryOp,
-    (a, b): (&Typed, &Typed),
-    sources: &Sources,
-    flat: &FlatModel,
-) -> Option<Diagnostic> {
+pub(crate) fn scaled(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnostic> {
     let of_literal = |(literal, number): (&Typed, &Typed)| {
         let is_number = number
             .dim
             .as_known()
             .is_some_and(Dimension::is_dimensionless);
         let may = literal.zero == Zero::Own && is_number;
-        let text = may.then(|| as_difference(literal, sources, flat));
+        let text = may.then(|| as_difference(literal));
         Some((literal.span, text??))
     };
     let swapped = || (op == BinaryOp::Mul).then(|| of_literal((b, a))).flatten();
@@ -101,9 +91,9 @@ pub(crate) fn scaled(
 }
 
 /// What to say of a literal in degC that is the step of a grid.
-pub(crate) fn as_step(step: &Typed, sources: &Sources, flat: &FlatModel) -> Option<Diagnostic> {
+pub(crate) fn as_step(step: &Typed) -> Option<Diagnostic> {
     let may = step.zero == Zero::Own;
-    let text = may.then(|| as_difference(step, sources, flat))??;
+    let text = may.then(|| as_difference(step))??;
     Some(refused::zero_point_counts(
         "the step of a grid",
         step.span,
@@ -112,18 +102,13 @@ pub(crate) fn as_step(step: &Typed, sources: &Sources, flat: &FlatModel) -> Opti
 }
 
 /// What to say of a difference that is held against a temperature with a zero point: that is 273.15 K too high.
-pub(crate) fn beside_difference(
-    a: &Typed,
-    b: &Typed,
-    sources: &Sources,
-    flat: &FlatModel,
-) -> Option<Diagnostic> {
+pub(crate) fn beside_difference(a: &Typed, b: &Typed, sources: &Sources) -> Option<Diagnostic> {
     let (difference, own) = match (a.zero, b.zero) {
         (Zero::Difference, Zero::Own) => (a, b),
         (Zero::Own, Zero::Difference) => (b, a),
         _ => return None,
     };
-    let help = match as_difference(own, sources, flat) {
+    let help = match as_difference(own) {
         Some(text) => format!("write `{text}` for a difference"),
         None => without_zero_point(own, sources),
     };
@@ -146,15 +131,10 @@ fn without_zero_point(own: &Typed, sources: &Sources) -> String {
 }
 
 /// The text of a literal as a difference: `5 [K]` of `5 [degC]` and of `9 [degF]`; `None` of what is no literal.
-fn as_difference(literal: &Typed, sources: &Sources, flat: &FlatModel) -> Option<String> {
-    flat.exprs.as_constant(literal.id)?;
-    let (number, unit) = sources.text(literal.span).split_once('[')?;
-    let unit = NamedUnit::parse(unit.split(']').next()?.trim())
-        .ok()?
-        .unit();
-    let number: f64 = number.trim().parse().ok()?;
-    let si = significant(unit.difference_to_si(number), 10);
-    Some(format!("{si} [{}]", unit.dimension.usual_unit()))
+fn as_difference(literal: &Typed) -> Option<String> {
+    let si = significant(literal.difference?, 10);
+    let unit = literal.dim.as_known()?.usual_unit();
+    Some(format!("{si} [{unit}]"))
 }
 
 /// What is set to a difference is shown as one: in K where its type says degC.

@@ -228,10 +228,7 @@ impl<L: Fn() -> Result<Project, Refused>> Runs<'_, L> {
 
 /// The measures of a run by name.
 fn valued(run: &Run) -> Result<Vec<(String, f64)>, Refused> {
-    let mut missing = run
-        .measures
-        .iter()
-        .filter(|measure| measure.missing.is_some());
+    let mut missing = run.measures.iter().filter(|measure| measure.value.is_nan());
     if let Some(measure) = missing.next() {
         let why = measure.missing.as_ref();
         let why = why.map_or(String::new(), |missing| format!(": {}", missing.text()));

@@ -277,7 +277,7 @@ static WORDS: [Habit; 33] = [
         "record",
         Place::First,
         "Hyde has no `record` of its own",
-        "write a `model` with parameters, or a parameter each",
+        "write a `model` with parameters, or a parameter each; measured data is declared behind the name of an experiment: `experiment bench(record log = \"scope.csv\") of Axis`",
     ),
     word(
         "operator",

@@ -15,6 +15,19 @@ pub(crate) struct Slip {
 const NUMBER: &str =
     "a number has a point as its decimal sign, `1.5`, and no sign between thousands, `1000000`";
 const LIST: &str = "a list is written in braces: `{1, 2, 3} [mm]`";
+/// What other tools set beside an experiment, or in its parentheses.
+const SETTINGS: [&str; 9] = [
+    "start",
+    "stop",
+    "every",
+    "skip",
+    "rtol",
+    "atol",
+    "tolerance",
+    "max_step",
+    "method",
+];
+const SOLVE: &str = "times, tolerances and the method of a run stand in its `solve`: `solve auto(rtol = 1e-6, max_step = 1 [ms]) start 0 [s] stop 2 [s] every 1 [ms];`";
 const PRODUCT: &str = "a product is written `a*b`";
 
 /// The slip in the statement that begins at `start` and is not understood at `at`, where the parser expected `expected`.
@@ -219,12 +232,18 @@ fn product(before: &str, here: &str, expected: &str) -> Option<&'static str> {
     (sides && goes_on && !is_keyword(here)).then_some(PRODUCT)
 }
 
-/// A statement of an experiment that has not its first word, or a file that has not its quotes.
+/// A statement of an experiment that has not its first word, a setting of its run, or a file that has not its quotes.
 fn experiment(before: &str, here: &str, expected: &str) -> Option<&'static str> {
     if word(before) == "experiment" && before.ends_with('=') && here.starts_with(is_word) {
         return Some("the name of a file stands in quotes: `record log = \"scope.csv\"`");
     }
-    if !before.is_empty() || !expected.contains("`stimulus`") {
+    let in_parentheses = word(before) == "experiment" && before.ends_with(['(', ',']);
+    let at_statement = before.is_empty() && expected.contains("`stimulus`");
+    let names_setting = (in_parentheses || at_statement) && SETTINGS.contains(&word(here));
+    if names_setting || (SETTINGS.contains(&before) && here.starts_with('=')) {
+        return Some(SOLVE);
+    }
+    if !at_statement {
         return None;
     }
     let equates = Scanner::new(here, 0).skip(1).any(|(_, token)| token == "=");

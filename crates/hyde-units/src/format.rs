@@ -9,6 +9,9 @@ use crate::{Dimension, NamedUnit};
 /// number would otherwise be below 0.1 or from 1000 on.
 #[must_use]
 pub fn engineering(si: f64, dimension: Dimension) -> String {
+    if let Some(text) = infinite(si) {
+        return text;
+    }
     let fraction = dimension.usual_fraction();
     let unit = fraction.to_string();
     let size = round_to(si.abs(), DIGITS);
@@ -35,6 +38,9 @@ pub fn engineering(si: f64, dimension: Dimension) -> String {
 /// Units of SI take the prefix that fits; any other unit is shown as it is declared.
 #[must_use]
 pub fn engineering_as(si: f64, unit: &NamedUnit) -> String {
+    if let Some(text) = infinite(si) {
+        return text;
+    }
     if !unit.unit().is_si() {
         return shown(unit.unit().from_si(si), unit.text());
     }
@@ -62,6 +68,12 @@ pub fn engineering_difference(si: f64, unit: &NamedUnit) -> String {
     } else {
         engineering_as(si, unit)
     }
+}
+
+/// The text of what is infinite in every unit, such as the settling time of what does not settle.
+fn infinite(si: f64) -> Option<String> {
+    let sign = if si < 0.0 { "-" } else { "" };
+    si.is_infinite().then(|| format!("{sign}infinite"))
 }
 
 fn shown(value: f64, unit: &str) -> String {
@@ -210,6 +222,14 @@ mod tests {
         assert_eq!(show(50.0 * std::f64::consts::PI, "rpm"), "1500 rpm");
         assert_eq!(show(293.15, "degC"), "20 degC");
         assert_eq!(show(0.5, "1"), "0.5");
+    }
+
+    #[test]
+    fn what_is_infinite_has_no_unit() {
+        let unit = NamedUnit::parse("s").unwrap();
+        assert_eq!(engineering_as(f64::INFINITY, &unit), "infinite");
+        let time = unit.unit().dimension;
+        assert_eq!(engineering(f64::NEG_INFINITY, time), "-infinite");
     }
 
     #[test]

@@ -66,7 +66,10 @@ pub fn solve(
             variable: variable.clone(),
             t: *t,
         }),
-        Some(Missing::Nothing(_) | Missing::Undefined) | None => None,
+        Some(
+            Missing::Nothing(_) | Missing::Infinite(_) | Missing::Unsettled(_) | Missing::Undefined,
+        )
+        | None => None,
     });
     if let Some(bad) = bad {
         return Err(bad);

@@ -64,6 +64,7 @@ impl<'a> Model<'a, '_> {
                         bare: branch.bare && value.bare,
                         turns: Turns::Plain,
                         zero: Zero::of_either(branch.zero, value.zero),
+                        difference: None,
                         span,
                         truth: value.truth,
                     };
@@ -122,12 +123,10 @@ impl<'a> Model<'a, '_> {
             Ok(unit) => {
                 let unit = unit.unit();
                 let id = self.flat.exprs.constant(unit.to_si(value));
+                let own = unit.is_absolute();
                 Typed {
-                    zero: if unit.is_absolute() {
-                        Zero::Own
-                    } else {
-                        Zero::Open
-                    },
+                    zero: if own { Zero::Own } else { Zero::Open },
+                    difference: own.then(|| unit.difference_to_si(value)),
                     ..self.typed(id, Dim::known(unit.dimension), span)
                 }
             }
@@ -147,13 +146,11 @@ impl<'a> Model<'a, '_> {
     /// Lowers what is no point of a scale but a width: a noise, a band. `0.5 [degC]` is 0.5 K there.
     pub(crate) fn width(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Typed {
         let typed = self.value(expr, scope);
-        if let ExprKind::Number(value, Some(unit)) = &expr.kind
-            && let Ok(unit) = NamedUnit::parse(&unit.text)
-        {
-            let width = unit.unit().difference_to_si(*value);
+        if let Some(width) = typed.difference {
             return Typed {
                 id: self.flat.exprs.constant(width),
                 zero: Zero::Open,
+                difference: None,
                 ..typed
             };
         }
@@ -163,12 +160,7 @@ impl<'a> Model<'a, '_> {
 
     /// Reports a difference of temperatures beside one that counts from a zero point.
     pub(crate) fn same_zero(&mut self, a: &Typed, b: &Typed) {
-        self.report_any(zero::beside_difference(
-            a,
-            b,
-            self.input.sources,
-            &self.flat,
-        ));
+        self.report_any(zero::beside_difference(a, b, self.input.sources));
     }
 
     pub(crate) fn not_constant(&mut self, what: &str, span: Span) {

@@ -38,6 +38,9 @@ pub(crate) fn clip_polyline(points: impl Iterator<Item = Point>, area: &Rect) ->
 
 /// The part of the segment inside `area`.
 pub(crate) fn clip_segment(from: Point, to: Point, area: &Rect) -> Option<(Point, Point)> {
+    if area.contains(from) && area.contains(to) {
+        return Some((from, to));
+    }
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let edges = [
         (-dx, from.x - area.left),

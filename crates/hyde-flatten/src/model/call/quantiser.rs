@@ -32,7 +32,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         self.agree(&a, &b, "the step and the value are", scope.instance);
-        self.report_any(zero::as_step(&b, self.input.sources, &self.flat));
+        self.report_any(zero::as_step(&b));
         let arena = &mut self.flat.exprs;
         let id = match name {
             "floor_to" | "round_to" if self.input.additions.shifts_quantisers() => {

@@ -49,6 +49,7 @@ impl<'a> Model<'a, '_> {
                     } else {
                         value.turns
                     },
+                    difference: value.difference.map(|difference| -difference),
                     ..value
                 }
             }
@@ -91,7 +92,7 @@ impl<'a> Model<'a, '_> {
                     (BinaryOp::Sub, "`-` subtracts")
                 };
                 let agree = self.agree(&a, &b, what, scope.instance);
-                let doubt = zero::added_as_difference(ir, (&a, &b), self.input.sources, &self.flat);
+                let doubt = zero::added_as_difference(ir, (&a, &b));
                 self.report_any(doubt);
                 // A temperature less a difference is one, a difference less a temperature is nothing.
                 if ir == BinaryOp::Sub && a.zero == Zero::Difference {
@@ -125,7 +126,7 @@ impl<'a> Model<'a, '_> {
                 } else {
                     BinaryOp::Mul
                 };
-                let doubt = zero::scaled(ir, (&a, &b), self.input.sources, &self.flat);
+                let doubt = zero::scaled(ir, (&a, &b));
                 self.report_any(doubt);
                 let id = self.flat.exprs.binary(ir, a.id, b.id);
                 Typed {
