@@ -17,7 +17,7 @@ use crate::shapes::{A_FEW, is_shape};
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 use torn::tear;
 
 /// What becomes of the unknowns.
@@ -169,10 +169,10 @@ fn reads_much(system: &System, solution: &Explicit) -> bool {
 }
 
 /// The arrays of which one equation reads more than a few elements.
-fn read_much_of(system: &System) -> HashSet<VarId> {
-    let mut found = HashSet::new();
+fn read_much_of(system: &System) -> FxHashSet<VarId> {
+    let mut found = FxHashSet::default();
     for equation in &system.equations {
-        let mut read: HashMap<VarId, usize> = HashMap::new();
+        let mut read: FxHashMap<VarId, usize> = FxHashMap::default();
         for id in system.flat.exprs.below(&[equation.lhs, equation.rhs]) {
             if let Expr::Var(var, _) = system.flat.exprs[id] {
                 *read.entry(var).or_default() += 1;
@@ -186,7 +186,7 @@ fn read_much_of(system: &System) -> HashSet<VarId> {
 
 /// An array of which a piece stays in the vector stays there whole.
 fn keep_arrays_together(matched: &Matched, in_vector: &mut [bool]) {
-    let mut stays: HashMap<VarId, bool> = HashMap::new();
+    let mut stays: FxHashMap<VarId, bool> = FxHashMap::default();
     for (unknown, kept) in matched.unknowns.iter().zip(&*in_vector) {
         *stays.entry(unknown.var).or_default() |= *kept;
     }

@@ -8,13 +8,13 @@
 
 use hyde_ir::dae::Dae;
 use hyde_ir::{BinaryOp, Expr, ExprId, Parameter, Quantity};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Replaces the largest parts made of parameters alone, everywhere.
 pub(crate) fn hoist(dae: &mut Dae) {
     let mut hoisting = Hoisting {
-        constant: HashMap::new(),
-        memo: HashMap::new(),
+        constant: FxHashMap::default(),
+        memo: FxHashMap::default(),
         count: 0,
     };
     let mut residuals = std::mem::take(&mut dae.residuals);
@@ -56,14 +56,15 @@ pub(crate) fn hoist(dae: &mut Dae) {
 
 struct Hoisting {
     /// Whether a node is made of parameters and numbers alone.
-    constant: HashMap<ExprId, bool>,
-    memo: HashMap<ExprId, ExprId>,
+    constant: FxHashMap<ExprId, bool>,
+    memo: FxHashMap<ExprId, ExprId>,
     count: usize,
 }
 
 impl Hoisting {
     fn apply(&mut self, dae: &mut Dae, root: &mut ExprId) {
-        for id in dae.exprs.below(&[*root]) {
+        let constant = &self.constant;
+        for id in dae.exprs.below_new(*root, |id| constant.contains_key(&id)) {
             let mut constant = dae.exprs[id].is_one_number();
             dae.exprs[id].for_each_child(|child| constant &= self.constant[&child]);
             self.constant.insert(id, constant);
@@ -72,10 +73,8 @@ impl Hoisting {
             *root = self.derived(dae, *root);
             return;
         }
-        for id in dae.exprs.below(&[*root]) {
-            if self.constant[&id] || self.memo.contains_key(&id) {
-                continue;
-            }
+        let known = |id: ExprId| self.constant[&id] || self.memo.contains_key(&id);
+        for id in dae.exprs.below_new(*root, known) {
             let new = match dae.exprs[id] {
                 Expr::Binary(BinaryOp::Div, a, b)
                     if self.constant[&b] && !matches!(dae.exprs[b], Expr::Const(_)) =>

@@ -18,8 +18,8 @@ use hyde_ir::{BinaryOp, Expr, ExprId, UnaryOp};
 pub(crate) use mismatch::{missing_boundary, name, unbound_input};
 use mismatch::{report, undetermined};
 pub(crate) use node::{Node, origin, sides};
+use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
-use std::collections::HashMap;
 
 /// The matched system.
 pub(crate) struct Matched {
@@ -128,9 +128,9 @@ pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<us
 }
 
 /// The magnitudes of the numbers that parts of sums are multiplied by, the largest where a part is met more than once.
-fn constant_factors(system: &System, sums: [ExprId; 2]) -> HashMap<ExprId, f64> {
+fn constant_factors(system: &System, sums: [ExprId; 2]) -> FxHashMap<ExprId, f64> {
     let exprs = &system.flat.exprs;
-    let mut factors: HashMap<ExprId, f64> = sums.iter().map(|&id| (id, 1.0)).collect();
+    let mut factors: FxHashMap<ExprId, f64> = sums.iter().map(|&id| (id, 1.0)).collect();
     // Each sum before its parts, each once: parts are shared, and the ways to one may be without number.
     for id in exprs.below(&sums).into_iter().rev() {
         let Some(&factor) = factors.get(&id) else {

@@ -12,7 +12,8 @@ use crate::shapes::{define_slopes, is_leaf, through_shapes};
 use crate::turning;
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
 use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use rustc_hash::FxHashMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Fills in the derivatives of the DAE's functions.
 pub(crate) fn differentiate(dae: &mut Dae) {
@@ -182,11 +183,11 @@ pub(crate) fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
 
 /// The definitions of each variable, with earlier ones put in: of an array in several pieces one for each, by the element it
 /// begins with.
-pub(crate) type Pieces = HashMap<VarId, BTreeMap<i32, Definition>>;
+pub(crate) type Pieces = FxHashMap<VarId, BTreeMap<i32, Definition>>;
 
 /// The definitions of some variables of the model with earlier ones put in.
 pub(crate) fn expanded_definitions(dae: &mut Dae, of: &dyn Fn(VarId) -> bool) -> Pieces {
-    let mut known = Pieces::new();
+    let mut known = Pieces::default();
     let definitions = dae.definitions.clone().into_iter();
     for definition in definitions.filter(|own| !own.slope && of(own.var)) {
         for (range, value) in expand(&mut dae.exprs, definition.range, definition.value, &known) {

@@ -20,7 +20,8 @@ use hyde_ir::dae::{Dae, Pin};
 use hyde_ir::{AutomatonId, Expr, ExprId, VarId};
 pub(crate) use inlined::Values;
 pub(crate) use mark::mark;
-use std::collections::{BTreeSet, HashMap};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 /// Exchanges the rows of pinned states with those of the forces that hold them.
 pub(crate) fn exchange_rows(
@@ -81,7 +82,7 @@ pub(crate) fn exchange_rows(
 }
 
 fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
-    let mut seen: HashMap<Cell, (AutomatonId, hyde_diag::Origin)> = HashMap::new();
+    let mut seen: FxHashMap<Cell, (AutomatonId, hyde_diag::Origin)> = FxHashMap::default();
     for slot in &system.slots {
         for branch in &slot.branches {
             let Some((cell, _)) = branch.pin else {
@@ -115,11 +116,11 @@ struct Rows {
     /// Of each unknown: the number of the residuals before its own, if it stays in the vector.
     of_unknown: Vec<usize>,
     /// The residuals of single states.
-    of_state: HashMap<Cell, usize>,
+    of_state: FxHashMap<Cell, usize>,
     /// The residuals of algebraic variables.
-    of_algebraic: HashMap<VarId, Vec<usize>>,
+    of_algebraic: FxHashMap<VarId, Vec<usize>>,
     /// The definitions.
-    definitions: HashMap<VarId, Vec<usize>>,
+    definitions: FxHashMap<VarId, Vec<usize>>,
 }
 
 impl Rows {
@@ -130,8 +131,8 @@ impl Rows {
             before - usize::from(kept)
         });
         let of_unknown = of_unknown.collect();
-        let mut of_state = HashMap::new();
-        let mut of_algebraic: HashMap<VarId, Vec<usize>> = HashMap::new();
+        let mut of_state = FxHashMap::default();
+        let mut of_algebraic: FxHashMap<VarId, Vec<usize>> = FxHashMap::default();
         for (row, residual) in dae.residuals.iter().enumerate() {
             let block = &dae.unknowns[residual.unknown];
             match (block.differential, block.len) {

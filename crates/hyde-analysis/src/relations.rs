@@ -9,7 +9,7 @@ use hyde_diag::Origin;
 use hyde_ir::dae::{Relation, RelationUse};
 use hyde_ir::print::Names;
 use hyde_ir::{AutomatonId, BinaryOp, Expr, ExprId, Id as _, Memo, RelationId, VariableKind};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Extracts the relations of equations, exits, `when` conditions and asserts.
 pub(crate) fn extract(system: &mut System) {
@@ -107,7 +107,7 @@ pub(crate) fn extract(system: &mut System) {
 /// The relations found so far.
 #[derive(Default)]
 struct Known {
-    of_roots: HashMap<ExprId, Vec<RelationId>>,
+    of_roots: FxHashMap<ExprId, Vec<RelationId>>,
 }
 
 impl Known {

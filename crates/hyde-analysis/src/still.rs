@@ -7,7 +7,7 @@
 use crate::partials::{expand, expanded_definitions, expanded_rows};
 use hyde_ir::dae::{Dae, Function, Partial, Space, Wrt};
 use hyde_ir::{ClockId, Expr, ExprId, Index, Memo, Range, VarId};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Derivatives of a function by parameters and by the memory, in the order of its rows.
 pub fn still_partials(dae: &mut Dae, function: Function) -> Vec<Partial> {
@@ -121,7 +121,7 @@ pub enum TickWrt {
 /// variables. Quantisers count as the identity (S3).
 pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, ExprId)> {
     let definitions = expanded_definitions(dae, &|_| true);
-    let mut assigned: HashMap<(VarId, i32), ExprId> = HashMap::new();
+    let mut assigned: FxHashMap<(VarId, i32), ExprId> = FxHashMap::default();
     let mut found = Vec::new();
     for assignment in dae.ticks[clock].assignments.clone() {
         let (range, value) = (assignment.range, assignment.value);

@@ -3,11 +3,14 @@
 use crate::{Expr, ExprArena, ExprId};
 use rustc_hash::FxHashSet;
 
+/// Most expressions have no more nodes, and a short list is searched sooner than a table is made.
+const SHORT: usize = 24;
+
 impl ExprArena {
     /// All nodes below and including `root`, children before parents.
     #[must_use]
     pub fn below(&self, roots: &[ExprId]) -> Vec<ExprId> {
-        let mut found = Vec::new();
+        let mut found = Vec::with_capacity(SHORT);
         self.walk(roots, &mut found, |_| false, |_| false);
         found.sort_unstable();
         found
@@ -16,7 +19,7 @@ impl ExprArena {
     /// The same without the nodes that are known, nor what is below these alone.
     #[must_use]
     pub fn below_new(&self, root: ExprId, known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
-        let mut found = Vec::new();
+        let mut found = Vec::with_capacity(SHORT);
         self.walk(&[root], &mut found, known, |_| false);
         found.sort_unstable();
         found
@@ -37,9 +40,8 @@ impl ExprArena {
         known: impl Fn(ExprId) -> bool,
         ends: impl Fn(ExprId) -> bool,
     ) -> bool {
-        /// Most expressions are small, and a short list is searched sooner than a table is made.
-        const SHORT: usize = 24;
-        let mut stack: Vec<ExprId> = roots.to_vec();
+        let mut stack: Vec<ExprId> = Vec::with_capacity(SHORT);
+        stack.extend_from_slice(roots);
         let mut seen = FxHashSet::default();
         while let Some(id) = stack.pop() {
             if known(id) {

@@ -25,7 +25,7 @@ use crate::id::{
     AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId, RelationId, UnknownId, VarId,
 };
 use crate::{Column, ExprArena, Parameter, Quantity, Range, Variable};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// A reported quantity: scalar, or an array with one column an element.
 #[derive(Clone, Debug)]
@@ -181,8 +181,8 @@ impl Dae {
 
     /// The numbers of the definitions of each variable that has any.
     #[must_use]
-    pub fn definitions_of_variables(&self) -> HashMap<VarId, Vec<usize>> {
-        let mut found: HashMap<VarId, Vec<usize>> = HashMap::new();
+    pub fn definitions_of_variables(&self) -> FxHashMap<VarId, Vec<usize>> {
+        let mut found: FxHashMap<VarId, Vec<usize>> = FxHashMap::default();
         for (number, definition) in self.definitions.iter().enumerate() {
             found.entry(definition.var).or_default().push(number);
         }

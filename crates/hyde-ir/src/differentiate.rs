@@ -82,6 +82,18 @@ fn below(
     known[&root]
 }
 
+/// The children of a node, in their order.
+fn children(expr: Expr) -> impl Iterator<Item = ExprId> {
+    let mut children = [None; 3];
+    let mut places = children.iter_mut();
+    expr.for_each_child(|child| {
+        if let Some(place) = places.next() {
+            *place = Some(child);
+        }
+    });
+    children.into_iter().flatten()
+}
+
 impl ExprArena {
     /// The derivative of `root` where `leaf` gives the derivative of each leaf, `None` for zero.
     pub fn tangent(
@@ -92,9 +104,7 @@ impl ExprArena {
         let mut known: FxHashMap<ExprId, Option<ExprId>> = FxHashMap::default();
         for id in self.below(&[root]) {
             let expr = self[id];
-            let mut children = Vec::new();
-            expr.for_each_child(|child| children.push(child));
-            let derivative = if children.is_empty() {
+            let derivative = if children(expr).next().is_none() {
                 leaf(self, expr).filter(|&d| !self.is_constant(d, 0.0))
             } else if let Expr::If(c, a, b) = expr {
                 match (known[&a], known[&b]) {
@@ -109,8 +119,8 @@ impl ExprArena {
                 known[&inner].map(|derivative| self.no_event(derivative))
             } else {
                 let mut sum: Option<ExprId> = None;
-                for (position, child) in children.iter().enumerate() {
-                    let Some(dc) = known[child] else { continue };
+                for (position, child) in children(expr).enumerate() {
+                    let Some(dc) = known[&child] else { continue };
                     let Some(factor) = self.factor(id, position, Ends::Exact) else {
                         continue;
                     };
@@ -143,15 +153,13 @@ impl ExprArena {
                 continue;
             };
             let expr = self[id];
-            let mut children = Vec::new();
-            expr.for_each_child(|child| children.push(child));
-            if children.is_empty() {
+            if children(expr).next().is_none() {
                 if wanted(expr) && !self.is_constant(adjoint, 0.0) {
                     found.push((expr, adjoint));
                 }
                 continue;
             }
-            for (position, child) in children.into_iter().enumerate() {
+            for (position, child) in children(expr).enumerate() {
                 if !relevant[&child] {
                     continue;
                 }

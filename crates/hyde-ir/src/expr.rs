@@ -375,10 +375,7 @@ impl ExprArena {
         memo: &mut Memo,
         mut replace: impl FnMut(&mut Self, ExprId, Expr) -> Option<ExprId>,
     ) -> ExprId {
-        for id in self.below(&[root]) {
-            if memo.contains_key(&id) {
-                continue;
-            }
+        for id in self.below_new(root, |id| memo.contains_key(&id)) {
             let expr = self[id];
             let new = replace(self, id, expr).unwrap_or_else(|| match expr {
                 Expr::Unary(op, a) => self.unary(op, memo[&a]),
@@ -454,13 +451,11 @@ impl ExprArena {
     }
 
     fn intern(&mut self, expr: Expr) -> ExprId {
-        if let Some(&id) = self.known.get(&expr) {
-            return id;
-        }
-        let id = ExprId::from_index(self.nodes.len());
-        self.nodes.push(expr);
-        self.known.insert(expr, id);
-        id
+        *self.known.entry(expr).or_insert_with(|| {
+            let id = ExprId::from_index(self.nodes.len());
+            self.nodes.push(expr);
+            id
+        })
     }
 }
 

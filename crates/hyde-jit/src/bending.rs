@@ -5,7 +5,8 @@ use crate::routine::{Leaf, Routine, Slot};
 use hyde_ir::dae::{Dae, Function, Wrt};
 use hyde_ir::{BinaryOp, Expr, ExprId, Index, Range, UnaryOp, VarId};
 use hyde_program::Coefficients;
-use std::collections::{BTreeSet, HashMap};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 /// Rows of the residual that bend, rising: a derivative by an unknown or its rate is another elsewhere, or with another value
 /// that events assign; or what is outside is read, which is time, record columns and delayed values.
@@ -103,7 +104,7 @@ impl Reads {
 struct Values<'a> {
     dae: &'a Dae,
     routine: Routine,
-    definitions: HashMap<VarId, Reads>,
+    definitions: FxHashMap<VarId, Reads>,
 }
 
 impl<'a> Values<'a> {
@@ -111,7 +112,7 @@ impl<'a> Values<'a> {
         let mut values = Self {
             dae,
             routine: Routine::plain("bending", Vec::new()),
-            definitions: HashMap::new(),
+            definitions: FxHashMap::default(),
         };
         for definition in &dae.definitions {
             let mut reads = values.reads(definition.value);

@@ -12,7 +12,7 @@ use crate::compiled::routines;
 use crate::routine::{Leaf, Routine, Slot, Step};
 use crate::wanted::is_truth;
 use hyde_ir::{BinaryOp, Dae, Expr, ExprId, UnaryOp};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::fmt::Write as _;
 
 /// Functions that operations call, which C has not.
@@ -99,9 +99,9 @@ fn function(dae: &Dae, routine: &Routine) -> String {
 struct Writer {
     text: String,
     /// Nodes that have a name for the rest of the function.
-    known: HashMap<ExprId, String>,
+    known: FxHashMap<ExprId, String>,
     /// Nodes that change with the counter.
-    moving: HashSet<ExprId>,
+    moving: FxHashSet<ExprId>,
     next: usize,
 }
 
@@ -109,8 +109,8 @@ impl Writer {
     fn new() -> Self {
         Self {
             text: String::new(),
-            known: HashMap::new(),
-            moving: HashSet::new(),
+            known: FxHashMap::default(),
+            moving: FxHashSet::default(),
             next: 0,
         }
     }
@@ -119,7 +119,7 @@ impl Writer {
         let slot = if step.slot == Slot::Work { "w" } else { "out" };
         if step.range.len() == 1 {
             let counter = step.range.first;
-            let mut local = HashMap::new();
+            let mut local = FxHashMap::default();
             let value = self.value(dae, routine, step.value, Some(counter), &mut local);
             let _ = writeln!(
                 self.text,
@@ -129,7 +129,7 @@ impl Writer {
         } else {
             let (first, last) = (step.range.first, step.range.last);
             let _ = writeln!(self.text, "    for (int i = {first}; i <= {last}; ++i) {{");
-            let mut local = HashMap::new();
+            let mut local = FxHashMap::default();
             let value = self.value(dae, routine, step.value, None, &mut local);
             let target = element(step.target.stride, step.target.offset);
             let _ = writeln!(self.text, "    {slot}[{target}] = {value};\n    }}");
@@ -145,7 +145,7 @@ impl Writer {
         let target = element(step.target.stride, step.target.offset);
         let _ = writeln!(self.text, "    for (int i = {first}; i <= {last}; ++i) {{");
         let _ = writeln!(self.text, "    if (!given[{target}]) {{");
-        let value = self.value(dae, routine, step.value, None, &mut HashMap::new());
+        let value = self.value(dae, routine, step.value, None, &mut FxHashMap::default());
         let _ = writeln!(self.text, "    p[{target}] = {value};\n    }}\n    }}");
     }
 
@@ -156,7 +156,7 @@ impl Writer {
         routine: &Routine,
         root: ExprId,
         counter: Option<i32>,
-        local: &mut HashMap<ExprId, String>,
+        local: &mut FxHashMap<ExprId, String>,
     ) -> String {
         // Only at the top level may a name be kept: a loop is a block of its own.
         let keeps = counter.is_some() && routine.name != "parameters";
@@ -234,7 +234,7 @@ fn element(stride: i32, offset: i32) -> String {
     }
 }
 
-fn operation(dae: &Dae, expr: Expr, named: &HashMap<ExprId, String>) -> String {
+fn operation(dae: &Dae, expr: Expr, named: &FxHashMap<ExprId, String>) -> String {
     let truth = |id: ExprId| match is_truth(dae.exprs[id]) {
         true => named[&id].clone(),
         false => format!("({} != 0.0)", named[&id]),

@@ -3,7 +3,7 @@
 use crate::routine::{Leaf, Routine, Slot};
 use hyde_ir::{BinaryOp, Dae, Expr, Index, Range, UnaryOp};
 use hyde_program::Point;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The memory of a call.
 pub(crate) struct Frame<'a> {
@@ -49,7 +49,7 @@ impl Interpreter {
             .iter()
             .map(|step| {
                 let nodes = dae.exprs.below(&[step.value]);
-                let mut number = HashMap::new();
+                let mut number = FxHashMap::default();
                 let mut operations: Vec<Operation> = Vec::new();
                 for id in nodes {
                     let operation = match dae.exprs[id] {

@@ -3,13 +3,13 @@
 use crate::wanted::Wanted;
 use cranelift_codegen::ir;
 use hyde_ir::ExprId;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Nodes that have been lowered: as a number, and as a truth.
 #[derive(Clone, Default)]
 pub(crate) struct Known {
-    numbers: HashMap<ExprId, ir::Value>,
-    truths: HashMap<ExprId, ir::Value>,
+    numbers: FxHashMap<ExprId, ir::Value>,
+    truths: FxHashMap<ExprId, ir::Value>,
 }
 
 impl Known {

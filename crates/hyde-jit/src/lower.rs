@@ -17,7 +17,6 @@ use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::FunctionBuilder;
 use hyde_ir::{BinaryOp, Dae, Expr, ExprId, Index, Range, UnaryOp};
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::HashMap;
 use std::ops::{self, RangeInclusive};
 
 /// Ranges shorter than this are written out.
@@ -41,7 +40,7 @@ pub(crate) struct Lowering<'a, 'f, 'i> {
     slots_read: FxHashMap<ExprId, u8>,
     reading: [Vec<ExprId>; Slot::ALL.len()],
     /// Scalar explicit variables by their place in the workspace.
-    explicit: HashMap<i32, ir::Value>,
+    explicit: FxHashMap<i32, ir::Value>,
     /// The places of the workspace that loops read, which find them in memory.
     read_in_loops: Vec<RangeInclusive<i32>>,
     /// Whether each node changes with the counter.
@@ -91,7 +90,7 @@ pub(crate) fn lower<'a>(
         known: Known::default(),
         slots_read: FxHashMap::default(),
         reading: Default::default(),
-        explicit: HashMap::new(),
+        explicit: FxHashMap::default(),
         read_in_loops: Vec::new(),
         pairs: sines_with_cosines(dae, moving.keys().copied()),
         of_cosine: None,

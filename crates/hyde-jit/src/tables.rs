@@ -12,7 +12,7 @@ use hyde_program::{
     Assignment, Clock, Column, Derivatives, ForeignPart, InitialCondition, Output, Parameter, Pin,
     Program, Reaction, RecordValue, RecordValueKind, Relation, UnknownBlock,
 };
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// The program of compiled kernels.
@@ -228,7 +228,7 @@ fn outputs(dae: &Dae) -> Vec<Output> {
         - figures::outputs(&dae.experiment.figures)
         - ledger::outputs(&dae.experiment.ledger);
     let mut found = Vec::new();
-    let mut first_of: HashMap<(ExprId, i32), usize> = HashMap::new();
+    let mut first_of: FxHashMap<(ExprId, i32), usize> = FxHashMap::default();
     for (number, output) in dae.outputs.iter().enumerate() {
         for (name, counter) in output.names.iter().zip(output.range.iter()) {
             let own = found.len();

@@ -14,25 +14,26 @@ use crate::cells::Cells;
 use crate::system::{Cell, Equation, System};
 use hyde_diag::MadeBy;
 use hyde_ir::{Expr, ExprId, Index, Quantity, Range, StateChoice, VarId, Variable, VariableKind};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::BTreeSet;
 
 /// Values through so many values at most.
 const MAX_DEPTH: usize = 50;
 
 /// The scalar equations by the cell on their left.
 pub(super) struct Explicit {
-    equations: HashMap<Cell, BTreeSet<usize>>,
+    equations: FxHashMap<Cell, BTreeSet<usize>>,
     /// The array equations by the array that is their left side as a whole.
-    arrays: HashMap<VarId, usize>,
+    arrays: FxHashMap<VarId, usize>,
     /// Cells that were found to have a derivative.
-    derivable: RefCell<HashSet<Cell>>,
+    derivable: RefCell<FxHashSet<Cell>>,
 }
 
 impl Explicit {
     pub(super) fn of(system: &System) -> Self {
-        let mut equations: HashMap<Cell, BTreeSet<usize>> = HashMap::new();
-        let mut arrays = HashMap::new();
+        let mut equations: FxHashMap<Cell, BTreeSet<usize>> = FxHashMap::default();
+        let mut arrays = FxHashMap::default();
         for number in 0..system.equations.len() {
             if let Some(var) = left_array(system, number) {
                 arrays.entry(var).or_insert(number);
@@ -123,7 +124,7 @@ impl Explicit {
         of: Cell,
         states: &Cells,
     ) -> Option<ExprId> {
-        self.derivative_below(system, id, (of, states), &mut HashMap::new(), 0)
+        self.derivative_below(system, id, (of, states), &mut FxHashMap::default(), 0)
     }
 
     fn derivative_below(
@@ -131,7 +132,7 @@ impl Explicit {
         system: &mut System,
         id: ExprId,
         (of, states): (Cell, &Cells),
-        known: &mut HashMap<Cell, ExprId>,
+        known: &mut FxHashMap<Cell, ExprId>,
         depth: usize,
     ) -> Option<ExprId> {
         if depth > MAX_DEPTH {

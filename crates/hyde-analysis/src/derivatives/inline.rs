@@ -10,7 +10,7 @@ use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::system::{Cell, System};
 use hyde_ir::{Expr, ExprId, Memo, Range, VariableKind};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Variables looked at for one equation at most: a constraint goes through few.
 const MAX_VARIABLES: usize = 200;
@@ -24,9 +24,10 @@ pub(super) fn constraints(
     declared: &[Vec<f64>],
     states: &Cells,
 ) -> Vec<Constraint> {
-    let usable: Vec<(usize, Vec<Cell>)> = (0..system.equations.len())
+    let mut usable: Vec<(usize, Vec<Cell>)> = (0..system.equations.len())
         .filter_map(|number| Some((number, variables(system, number)?)))
         .collect();
+    leave_out_ends(&mut usable, states);
     let mut of: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     for (number, cells) in &usable {
         for &cell in cells.iter().filter(|cell| !states.contains(cell)) {
@@ -63,6 +64,33 @@ pub(super) fn constraints(
         found.push((number, lhs, rhs, cells));
     }
     found
+}
+
+/// Leaves out equations that have a variable of their own, for no other equation gives it a value; then those that have one once
+/// these are gone, and so on. What is left is on ways around.
+fn leave_out_ends(equations: &mut Vec<(usize, Vec<Cell>)>, states: &Cells) {
+    let mut of: BTreeMap<Cell, BTreeSet<usize>> = BTreeMap::new();
+    for (at, (_, cells)) in equations.iter().enumerate() {
+        for &cell in cells.iter().filter(|cell| !states.contains(cell)) {
+            of.entry(cell).or_default().insert(at);
+        }
+    }
+    let mut stays = vec![true; equations.len()];
+    let only = |of: &BTreeSet<usize>| of.first().copied().filter(|_| of.len() == 1);
+    let mut ends: Vec<usize> = of.values().filter_map(only).collect();
+    while let Some(at) = ends.pop() {
+        if !std::mem::replace(&mut stays[at], false) {
+            continue;
+        }
+        for cell in &equations[at].1 {
+            if let Some(others) = of.get_mut(cell) {
+                others.remove(&at);
+                ends.extend(only(others));
+            }
+        }
+    }
+    let mut stays = stays.into_iter();
+    equations.retain(|_| stays.next() == Some(true));
 }
 
 /// The values found for one equation.

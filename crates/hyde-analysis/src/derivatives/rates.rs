@@ -64,6 +64,13 @@ fn rename(
             (branch.lhs, branch.rhs)
         }
     };
+    let reads_derivative = |id| {
+        let exprs = &system.flat.exprs;
+        exprs.any(id, |expr| matches!(expr, Expr::Der(..)))
+    };
+    if !reads_derivative(lhs) && !reads_derivative(rhs) {
+        return false;
+    }
     let own = if let Place::Equation(number) = place {
         Some(number)
     } else {

@@ -11,7 +11,7 @@ use crate::matching::{Matched, name};
 use crate::segments::Segment;
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, VarId};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A definition is steeper than another if it multiplies what it reads by so many times more.
 const STEEPER: f64 = 1e3;
@@ -26,10 +26,10 @@ pub(super) fn tear(
     in_vector: &mut [bool],
 ) {
     let mut loops = loops_of(edges);
-    let mut steepness = HashMap::new();
+    let mut steepness = FxHashMap::default();
     for component in &loops {
         let variables = component.iter().map(|&node| matched.unknowns[node].var);
-        let variables: HashSet<VarId> = variables.collect();
+        let variables: FxHashSet<VarId> = variables.collect();
         for &node in component {
             if let Some(definition) = &explicit[node] {
                 let own = steepness_of(system, declared, definition.value, &variables);
@@ -71,7 +71,7 @@ fn steepness_of(
     system: &mut System,
     declared: &[Vec<f64>],
     value: ExprId,
-    of_loop: &HashSet<VarId>,
+    of_loop: &FxHashSet<VarId>,
 ) -> i32 {
     let read = |expr| matches!(expr, Expr::Var(var, _) if of_loop.contains(&var));
     let gradient = system.exprs().gradient(value, read);
@@ -89,10 +89,10 @@ fn best(
     system: &System,
     matched: &Matched,
     edges: &[Vec<usize>],
-    steepness: &HashMap<usize, i32>,
+    steepness: &FxHashMap<usize, i32>,
     component: &[usize],
 ) -> Option<usize> {
-    let mut readers: HashMap<usize, usize> = HashMap::new();
+    let mut readers: FxHashMap<usize, usize> = FxHashMap::default();
     for &read in component.iter().flat_map(|&node| &edges[node]) {
         *readers.entry(read).or_default() += 1;
     }

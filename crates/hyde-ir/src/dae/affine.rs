@@ -2,7 +2,7 @@
 
 use super::{Dae, Space};
 use crate::{BinaryOp, Expr, ExprId, UnaryOp, VarId};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// How a value depends on the unknowns between two events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,8 +35,8 @@ impl Dae {
     /// Whether the residual is affine. `memory` says what its values are taken for, but for those of relations and modes: given
     /// ones cannot be factors of unknowns.
     fn is_affine(&self, memory: Dependence) -> bool {
-        let mut known: HashMap<ExprId, Dependence> = HashMap::new();
-        let mut of_variable: HashMap<VarId, Dependence> = HashMap::new();
+        let mut known: FxHashMap<ExprId, Dependence> = FxHashMap::default();
+        let mut of_variable: FxHashMap<VarId, Dependence> = FxHashMap::default();
         for definition in &self.definitions {
             let own = self.dependence(definition.value, memory, &mut known, &of_variable);
             let all = of_variable.entry(definition.var).or_insert(own);
@@ -51,8 +51,8 @@ impl Dae {
         &self,
         root: ExprId,
         memory: Dependence,
-        known: &mut HashMap<ExprId, Dependence>,
-        of_variable: &HashMap<VarId, Dependence>,
+        known: &mut FxHashMap<ExprId, Dependence>,
+        of_variable: &FxHashMap<VarId, Dependence>,
     ) -> Dependence {
         for id in self.exprs.below(&[root]) {
             if known.contains_key(&id) {

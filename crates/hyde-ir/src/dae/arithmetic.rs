@@ -2,7 +2,7 @@
 
 use super::{Dae, Space};
 use crate::{BinaryOp, Expr, ExprId, UnaryOp, VarId};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 impl Dae {
     /// For each relation, whether its root function is made of unknowns, memory and parameters by sums, products, magnitudes
@@ -10,7 +10,7 @@ impl Dae {
     /// derivatives and periodic functions may turn unseen by a solver.
     #[must_use]
     pub fn arithmetic_relations(&self) -> Vec<bool> {
-        let mut values: HashMap<VarId, Vec<ExprId>> = HashMap::new();
+        let mut values: FxHashMap<VarId, Vec<ExprId>> = FxHashMap::default();
         for definition in &self.definitions {
             let of_variable = values.entry(definition.var).or_default();
             of_variable.push(definition.value);
@@ -21,8 +21,8 @@ impl Dae {
             .collect()
     }
 
-    fn is_arithmetic(&self, root: ExprId, values: &HashMap<VarId, Vec<ExprId>>) -> bool {
-        let mut seen = HashSet::new();
+    fn is_arithmetic(&self, root: ExprId, values: &FxHashMap<VarId, Vec<ExprId>>) -> bool {
+        let mut seen = FxHashSet::default();
         let mut open = vec![root];
         while let Some(root) = open.pop() {
             for id in self.exprs.below(&[root]) {
