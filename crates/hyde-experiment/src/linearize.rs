@@ -137,10 +137,10 @@ pub fn linearize_about(
     }
     let mut places = Vec::new();
     for name in inputs {
-        let (parameter, _) = program
+        let (parameter, element) = program
             .parameter(name)
             .ok_or_else(|| LinearizeError::NoInput(name.clone()))?;
-        places.push(parameter.place);
+        places.push(parameter.place + element);
     }
     let mut setup = setup_with(program, records, parameters.to_vec());
     setup.reached = about.reached.cloned().unwrap_or_default();

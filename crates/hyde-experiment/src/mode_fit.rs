@@ -174,6 +174,10 @@ impl ModeFitRequest<'_> {
             if parameter.structural {
                 return Err(ModeFitError::Structural(name.clone()));
             }
+            if parameter.is_whole(name) {
+                let error = RunError::CannotSet(name.clone(), "it is an array: name its elements");
+                return Err(ModeFitError::Parameter(error));
+            }
             if parameter.is_final {
                 let error = RunError::CannotSet(name.clone(), "it is final");
                 return Err(ModeFitError::Parameter(error));

@@ -384,7 +384,7 @@ pub fn places(program: &Program, names: &[String]) -> Result<Vec<usize>, RunErro
             let why = "the equations are compiled with its value";
             return Err(RunError::NoGradientBy(name.clone(), why));
         }
-        if parameter.len > 1 && parameter.name == *name {
+        if parameter.is_whole(name) {
             let why = "it is an array: name one of its elements";
             return Err(RunError::NoGradientBy(name.clone(), why));
         }
@@ -413,6 +413,10 @@ pub fn parameters(
         let Some((parameter, element)) = program.parameter(name) else {
             return Err(RunError::NoParameter(name.clone()));
         };
+        if parameter.is_whole(name) {
+            let why = "it is an array: set its elements, `name[1]` and so on";
+            return Err(RunError::CannotSet(name.clone(), why));
+        }
         let Parameter {
             is_final,
             found,

@@ -8,7 +8,8 @@ use crate::refusals::dimensions as refused;
 use crate::shown::quantity_of;
 use hyde_diag::{Diagnostic, Sources};
 use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
-use hyde_units::{Dimension, significant};
+use hyde_syntax::ast::UnitText;
+use hyde_units::{Dimension, Unit, significant};
 
 /// What is known of the zero point of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +51,11 @@ impl Zero {
             Some(_) | None => Self::Open,
         }
     }
+}
+
+/// 0 K in a unit with a zero point: `-273.15 degC`.
+pub(crate) fn absolute_zero(unit: Unit, text: &UnitText) -> String {
+    format!("{} {}", significant(unit.from_si(0.0), 7), text.text)
 }
 
 /// What to say of a literal in degC that is added: its zero point is added as well.

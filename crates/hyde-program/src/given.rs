@@ -40,6 +40,12 @@ impl Misfit {
 }
 
 impl Parameter {
+    /// Whether a name means all elements of an array: no single value is for it.
+    #[must_use]
+    pub fn is_whole(&self, name: &str) -> bool {
+        self.len > 1 && self.name == name
+    }
+
     /// Why a value does not fit the parameter, if it does not.
     #[must_use]
     pub fn misfit(&self, given: &Given<'_>) -> Option<Misfit> {
@@ -47,6 +53,9 @@ impl Parameter {
         let shown = self.unit.text();
         if given.truth && self.allowed.kind != Kind::Boolean {
             return misfit("is a number, not `true` or `false`".to_owned(), Vec::new());
+        }
+        if given.unit.is_some_and(|unit| unit.unit().is_absolute()) && given.value < 0.0 {
+            return misfit("cannot be below absolute zero".to_owned(), Vec::new());
         }
         match given.unit {
             None if given.value == 0.0 || !self.needs_unit() => {}

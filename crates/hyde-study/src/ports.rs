@@ -13,8 +13,8 @@ pub fn is_input(program: &Program, parameter: &Parameter) -> bool {
     parameter.origin.made_by == MadeBy::Experiment && program.output(&parameter.name).is_some()
 }
 
-/// The numbers of the outputs named; if none is, those of the variables of the model itself, or, if it has none, of every
-/// reported quantity that is not an element of an array.
+/// The numbers of the outputs named; if none is, those of the variables of the model itself, or, if it has none, of its
+/// arrays, or else of every reported quantity that is not an element of an array.
 ///
 /// # Errors
 /// A name that is no reported quantity.
@@ -32,11 +32,15 @@ pub fn chosen_outputs(program: &Program, asked: &[String]) -> Result<BTreeSet<us
             .filter(|parameter| is_input(program, parameter))
             .map(|parameter| parameter.name.as_str())
             .collect();
-        let own = numbers(&|name| !name.contains(['.', '[']) && !inputs.contains(&name));
-        return Ok(match own.is_empty() {
-            true => numbers(&|name| !name.contains('[')),
-            false => own,
-        });
+        let is_own = |name: &str| !name.contains('.') && !inputs.contains(&name);
+        let mut found = numbers(&|name| is_own(name) && !name.contains('['));
+        if found.is_empty() {
+            found = numbers(&is_own);
+        }
+        if found.is_empty() {
+            found = numbers(&|name| !name.contains('['));
+        }
+        return Ok(found);
     }
     asked
         .iter()

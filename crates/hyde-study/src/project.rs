@@ -13,7 +13,7 @@ use crate::tables::{self, Table};
 use crate::world::{as_text, read_text};
 use hyde_compiler::{Backend, Compiled, File, Form, FreeInputs, Header, Request};
 use hyde_diag::{Diagnostics, Sources};
-use hyde_syntax::ast::{Experiment, ExperimentItem, Item};
+use hyde_syntax::ast::{Drive, Experiment, ExperimentItem, Item};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -329,10 +329,14 @@ impl Project {
         let mut driven: Vec<String> = Vec::new();
         for item in experiment.into_iter().flat_map(|own| &mut own.items) {
             if let ExperimentItem::Stimulus(drives) = item {
-                driven.extend(drives.iter().map(|drive| drive.target.dotted()));
-                drives.retain(|drive| !inputs.contains(&drive.target.dotted()));
+                let element = |drive: &Drive| hyde_syntax::format_reference(&drive.target);
+                let names = |drive: &Drive| [drive.target.dotted(), element(drive)];
+                driven.extend(drives.iter().flat_map(names));
+                drives.retain(|drive| !names(drive).iter().any(|name| inputs.contains(name)));
             }
         }
+        // A stimulus of an element is named by the array as well.
+        driven.dedup();
         match inputs.iter().find(|input| !driven.contains(input)) {
             None => Ok(()),
             Some(other) if driven.is_empty() => Err(format!(

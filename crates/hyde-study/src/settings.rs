@@ -84,6 +84,13 @@ pub fn quantity(text: &str, dimension: Dimension) -> Option<f64> {
 
 /// Whether a setting fits a parameter; what to write instead if not.
 pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
+    let name = &setting.path;
+    if parameter.is_whole(name) {
+        let len = parameter.len;
+        return Err(format!(
+            "`{name}` is an array of {len}: set its elements, `--set '{name}[1]=…'`"
+        ));
+    }
     if setting.si {
         return Ok(());
     }
@@ -95,7 +102,6 @@ pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
     let Some(misfit) = parameter.misfit(&given) else {
         return Ok(());
     };
-    let name = &setting.path;
     let written: Vec<String> = misfit
         .instead
         .iter()

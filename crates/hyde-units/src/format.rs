@@ -179,7 +179,7 @@ mod tests {
             (9.99996e-4, "m", "1 mm"),
             (1e-30, "m", "1e-30 m"),
             (f64::NAN, "m", "NaN m"),
-            (f64::INFINITY, "m", "inf m"),
+            (f64::INFINITY, "m", "infinite"),
         ] {
             assert_eq!(shown(si, unit), text);
         }

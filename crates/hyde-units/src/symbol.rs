@@ -129,7 +129,7 @@ pub(crate) fn prefixed(text: &str) -> Option<(char, Scale, &'static Symbol)> {
 
 /// Whether a character can be part of a symbol.
 pub(crate) fn is_symbol_character(c: char) -> bool {
-    c.is_alphabetic() || matches!(c, '%' | '°' | '_')
+    c.is_alphabetic() || matches!(c, '%' | '°' | '_' | '\u{2103}' | '\u{2109}')
 }
 
 /// The spelling of the table: signs that keyboards lack have a word in ASCII.
@@ -140,6 +140,9 @@ fn plain(text: &str) -> String {
             '\u{b5}' | '\u{3bc}' => plain.push('u'),
             '\u{3a9}' | '\u{2126}' => plain.push_str("ohm"),
             '°' => plain.push_str("deg"),
+            '\u{2103}' => plain.push_str("degC"),
+            '\u{2109}' => plain.push_str("degF"),
+            '\u{212a}' => plain.push('K'),
             _ => plain.push(c),
         }
     }

@@ -118,6 +118,9 @@ impl<'m> Layout<'m> {
                 .collect();
             return Err(refused::no_parameter(name, span, &near));
         };
+        if parameter.is_whole(name) {
+            return Err(refused::whole_array(name, parameter.len, span));
+        }
         if parameter.is_final {
             return Err(refused::final_parameter(name, span, parameter.origin.span));
         }

@@ -153,10 +153,10 @@ fn change(target: Reference) -> Change {
 
 /// Drives an input by this and nothing else.
 fn drive(experiment: &mut Experiment, target: &Reference, value: &Expr) {
-    let name = target.dotted();
+    let name = hyde_syntax::format_reference(target);
     for item in &mut experiment.items {
         if let ExperimentItem::Stimulus(drives) = item {
-            drives.retain(|drive| drive.target.dotted() != name);
+            drives.retain(|drive| hyde_syntax::format_reference(&drive.target) != name);
         }
     }
     let drive = Drive {

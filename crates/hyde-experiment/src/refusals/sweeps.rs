@@ -52,6 +52,10 @@ diagnostics! {
             near => { help "did you mean `{}`?", near.join("`, `"); }
         }
     }
+    fn whole_array(name: &str, len: usize, here: Span) = error BadSweep {
+        "`{name}` is an array of {len}"; at here, "one value for all of it";
+        help "vary an element: `{name}[1]`";
+    }
     fn final_parameter(name: &str, here: Span, declared: Span) = error BadSweep {
         "`{name}` is final"; at here, "cannot vary"; at declared, "made final here";
     }

@@ -10,19 +10,16 @@ use crate::refusals::experiment as refused;
 use crate::shown::quantity_of;
 use hyde_diag::{Diagnostics, MadeBy};
 use hyde_ir::flat::{Bode, Moment};
-use hyde_ir::{ExprId, FlatModel, Quantity};
+use hyde_ir::{ExprId, FlatModel, Index, Quantity, VarId};
 use hyde_syntax::ast::{self, Reference};
 use hyde_units::Dimension;
 
 pub(super) fn lower_bode<'a>(model: &mut Model<'a, '_>, bode: &'a ast::Bode, root: InstanceId) {
     let (input, outputs, band) = (&bode.input, &bode.outputs, &bode.band);
     let scope = Scope::new(root, Setting::Report);
-    let driven = match model.resolve(input, &scope) {
-        Some(Resolved::Variable(var, None)) if model.flat.variables[var].input => var,
-        _ => {
-            model.report(refused::response_of_no_input(&input.dotted(), input.span));
-            return;
-        }
+    let Some(driven) = driven_input(model, input, &scope) else {
+        model.report(refused::response_of_no_input(&input.dotted(), input.span));
+        return;
     };
     let mut list = Vec::new();
     for output in outputs {
@@ -51,6 +48,21 @@ pub(super) fn lower_bode<'a>(model: &mut Model<'a, '_>, bode: &'a ast::Bode, roo
         modes,
         origin,
     });
+}
+
+/// The input at which a response starts, and which element of it, from 0.
+pub(super) fn driven_input<'a>(
+    model: &mut Model<'a, '_>,
+    input: &'a Reference,
+    scope: &Scope<'a>,
+) -> Option<(VarId, usize)> {
+    let Some(Resolved::Variable(var, index)) = model.resolve(input, scope) else {
+        return None;
+    };
+    let variable = &model.flat.variables[var];
+    let index = index.or(variable.len.is_none().then_some(Index::SCALAR))?;
+    let element = usize::try_from(index.offset).ok()?;
+    variable.input.then_some((var, element))
 }
 
 /// Where the run is when it is linearised: `at 0.3 [s]`, `at start`, `at steady`.
@@ -136,7 +148,7 @@ fn mode_of(
     name: &Reference,
     mode: &ast::Name,
 ) -> Option<(hyde_ir::AutomatonId, usize)> {
-    let path = name.dotted();
+    let path = hyde_syntax::format_reference(name);
     let found = flat
         .automata
         .enumerate()

@@ -57,7 +57,7 @@ pub(super) fn lower_margins<'a>(
             .origin(root, signal.span)
             .made_by(MadeBy::Experiment);
         model.flat.experiment.cuts.push(Cut {
-            signal: signal.dotted(),
+            signal: hyde_syntax::format_reference(signal),
             input,
             back,
             clock,
@@ -135,7 +135,10 @@ fn test_signal(
     root: InstanceId,
 ) -> (String, ExprId) {
     let number = model.flat.experiment.cuts.len() + 1;
-    let name = format!("test signal {number} at {}", signal.dotted());
+    let name = format!(
+        "test signal {number} at {}",
+        hyde_syntax::format_reference(signal)
+    );
     let quantity = model.flat.variables[var].quantity.clone();
     let origin = model
         .tree

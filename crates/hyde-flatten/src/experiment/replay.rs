@@ -41,16 +41,31 @@ pub(crate) fn find_replays(model: &mut Model<'_, '_>, root: InstanceId) {
         };
         for drive in drives {
             let scope = Scope::new(root, Setting::Report);
-            if let Some(Resolved::Variable(var, None)) = model.resolve(&drive.target, &scope) {
-                model.replays.push(Replay {
-                    drive,
-                    var,
-                    root,
-                    used: false,
-                    value: None,
-                    recorded: None,
-                });
+            let target = &drive.target;
+            let var = match model.resolve(target, &scope) {
+                None => continue,
+                Some(Resolved::Variable(var, None)) => var,
+                Some(Resolved::Variable(..)) => {
+                    model.report(refused::replays_array(target));
+                    continue;
+                }
+                Some(_) => {
+                    model.report(refused::nothing_to_replay(target));
+                    continue;
+                }
+            };
+            if model.flat.variables[var].len.is_some() {
+                model.report(refused::replays_array(target));
+                continue;
             }
+            model.replays.push(Replay {
+                drive,
+                var,
+                root,
+                used: false,
+                value: None,
+                recorded: None,
+            });
         }
     }
 }
@@ -187,7 +202,7 @@ pub(super) fn record_replays(model: &mut Model<'_, '_>) {
         let origin = model.tree.origin(root, drive.target.span);
         let clocked = is_held(&model.flat, var, value) || !clocks_of(&model.flat, value).is_empty();
         model.flat.experiment.measured.push(Measured {
-            name: drive.target.dotted(),
+            name: hyde_syntax::format_reference(&drive.target),
             column,
             preparation,
             value,
@@ -216,7 +231,7 @@ pub(super) fn keep_commands(model: &mut Model<'_, '_>) {
         }
         let origin = model.tree.origin(replay.root, drive.target.span);
         model.flat.experiment.replayed.push(Replayed {
-            name: drive.target.dotted(),
+            name: hyde_syntax::format_reference(&drive.target),
             column: only_column(&model.flat, recorded),
             recorded,
             value,

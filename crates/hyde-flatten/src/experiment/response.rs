@@ -1,13 +1,12 @@
 //! Measured frequency responses: `measured response(file.i, file.phi) = response(i, motor.phi)`, or the columns of a
 //! record over frequency on the left.
 
-use super::bode::shown_quantity;
+use super::bode::{driven_input, shown_quantity};
 use super::measured::recorded;
 use super::time::agree_time;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
-use crate::model::lower::Resolved;
 use crate::refusals::records as refused;
 use hyde_diag::{Diagnostics, MadeBy};
 use hyde_ir::flat::{Bode, MeasuredResponse, Preparation, RecordedResponse, ScaledColumn};
@@ -52,7 +51,7 @@ fn measured_response<'a>(model: &mut Model<'a, '_>, channel: &'a Channel, root: 
     let Some((source, dim)) = recorded_response(model, &channel.signal, root) else {
         return;
     };
-    let over = model.dim(input);
+    let over = model.dim(input.0);
     let computed = model.typed(value.id, value.dim.divide(&over), channel.value.span);
     let left = model.typed(value.id, dim.clone(), channel.signal.span);
     model.agree(&left, &computed, "the record and the model are", root);
@@ -90,7 +89,7 @@ fn of_model<'a>(
     model: &mut Model<'a, '_>,
     expr: &'a Expr,
     root: InstanceId,
-) -> Option<(VarId, String, Typed)> {
+) -> Option<((VarId, usize), String, Typed)> {
     let scope = Scope::new(root, Setting::Report);
     let (_, arguments) = call(expr)?;
     let [input, output] = arguments.as_slice() else {
@@ -98,10 +97,7 @@ fn of_model<'a>(
         return None;
     };
     let driven = match &input.kind {
-        ExprKind::Reference(reference) => match model.resolve(reference, &scope) {
-            Some(Resolved::Variable(var, None)) if model.flat.variables[var].input => Some(var),
-            _ => None,
-        },
+        ExprKind::Reference(reference) => driven_input(model, reference, &scope),
         ExprKind::Number(..)
         | ExprKind::String(_)
         | ExprKind::Boolean(_)
@@ -261,7 +257,7 @@ fn report_over_frequency(model: &mut Model<'_, '_>) {
 /// The response from that input to that value: what `bode` asks for, or one asked for by this.
 fn place_of_response(
     model: &mut Model<'_, '_>,
-    input: VarId,
+    input: (VarId, usize),
     name: &str,
     value: &Typed,
     root: InstanceId,

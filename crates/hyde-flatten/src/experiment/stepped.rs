@@ -29,7 +29,7 @@ pub(super) fn is_stepped(model: &Model<'_, '_>, input: &str) -> bool {
 /// What `by stepped(…)` says; drives the input where a frequency is set.
 pub(super) fn stepped<'a>(
     model: &mut Model<'a, '_>,
-    input: VarId,
+    (input, _): (VarId, usize),
     method: &ast::Name,
     arguments: &'a [Argument],
     outputs: &[&str],
@@ -37,6 +37,10 @@ pub(super) fn stepped<'a>(
 ) -> Option<Stepped> {
     if method.text != "stepped" {
         model.report(refused::unknown_steps(method));
+        return None;
+    }
+    if model.flat.variables[input].len.is_some() {
+        model.report(refused::steps_of_an_element(method.span));
         return None;
     }
     for argument in arguments {

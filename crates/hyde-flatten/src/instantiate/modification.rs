@@ -61,6 +61,11 @@ fn modifiers_below<'a>(
     out: &mut Vec<Modifier<'a>>,
 ) {
     for change in changes {
+        let mut parts = change.target.parts.iter();
+        if parts.any(|part| !part.subscripts.is_empty()) {
+            model.report(refused::modifies_one_element(&change.target));
+            continue;
+        }
         let mut target = above.to_vec();
         target.extend(
             change

@@ -14,7 +14,7 @@ use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};
 use crate::meaning;
 use crate::model::Model;
-use crate::refusals::values as refused;
+use crate::refusals::{dimensions, values as refused};
 use crate::turns::Turns;
 use crate::zero::{self, Zero};
 use hyde_diag::Span;
@@ -124,6 +124,10 @@ impl<'a> Model<'a, '_> {
                 let unit = unit.unit();
                 let id = self.flat.exprs.constant(unit.to_si(value));
                 let own = unit.is_absolute();
+                if own && unit.to_si(value) < 0.0 {
+                    let least = zero::absolute_zero(unit, text);
+                    self.report(dimensions::below_absolute_zero(span, &least));
+                }
                 Typed {
                     zero: if own { Zero::Own } else { Zero::Open },
                     difference: own.then(|| unit.difference_to_si(value)),

@@ -69,6 +69,10 @@ diagnostics! {
         "a temperature with its zero point is {how}"; at literal, "its zero point counts as well";
         help "write `{difference}` for a difference";
     }
+    fn below_absolute_zero(literal: Span, least: &str) = error ZeroPoint {
+        "no temperature is below absolute zero"; at literal, "below {least}";
+        help "write a difference of temperatures in K";
+    }
     fn zero_point_of_width(width: Span, help: &str) = warning ZeroPoint {
         "a noise or a band counts from the zero point of a temperature"; at width, "counts from a zero point that is not 0 K";
         help "{help}";

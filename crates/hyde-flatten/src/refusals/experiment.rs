@@ -47,6 +47,10 @@ diagnostics! {
             inputs => { help "its inputs are {}", listed(inputs); }
         }
     }
+    fn drives_no_element(target: &Reference) = error NotAnInput {
+        "`{}` has no such element to drive", target.dotted(); at target.span, "one element is driven at a time";
+        help "write its number: `stimulus {}[1] = …;`", target.dotted();
+    }
     fn noise_without_column(target: &Reference, value: Span) = error NoColumn {
         "`{}` has noise, but its stimulus is not a single column", target.dotted();
         at value, "neither a column of a record nor a column times a number";
@@ -81,6 +85,10 @@ diagnostics! {
     }
     fn response_of_no_input(input: &str, here: Span) = error NotAnInput {
         "`{input}` is not an input"; at here, "a frequency response starts at an input of the model";
+    }
+    fn steps_of_an_element(method: Span) = error NotAnInput {
+        "stepped sines drive an input that is not an array"; at method, "this input is an element";
+        help "declare an input of its own: `input Force F1;`, and `Force F[2] = {{F1, F2}};`";
     }
     fn no_modes(of: &Reference, known: &[&str]) = error UnknownName {
         "`{}` has no modes", of.dotted(); at of.span, "no `modes` block";

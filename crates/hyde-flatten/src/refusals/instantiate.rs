@@ -88,6 +88,10 @@ diagnostics! {
     fn nothing_to_modify(name: &str, here: Span) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "changes nothing";
     }
+    fn modifies_one_element(target: &Reference) = error UnknownModification {
+        "a modification cannot change one element of an array"; at target.span, "one element";
+        help "give each element its value: `{} = {{…, …}}`; `--set` and `vary` set one element", target.dotted();
+    }
     fn no_element_to_modify(name: &str, here: Span, class: &str, known: &[&str]) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "`{class}` has no such element";
         match (near_but_other(name, known)) {

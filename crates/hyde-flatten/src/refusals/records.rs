@@ -58,6 +58,10 @@ diagnostics! {
         note "a replayed column replaces the one equation that determines its variable";
         help "replay an input, an output, or a variable declared with a value: `site Force force = …;`";
     }
+    fn replays_array(target: &Reference) = error CannotReplay {
+        "`{}` is an array", target.dotted(); at target.span, "a column replaces a single variable";
+        help "replay a variable of its own: `Force F1 = …;`, which the element is made of";
+    }
     fn response_takes_two(call: Span) = error BadArguments {
         "`response` takes an input of the model and a variable that responds to it"; at call, "not two arguments";
         help "write `response(i, motor.phi)`";

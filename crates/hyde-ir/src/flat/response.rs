@@ -31,8 +31,8 @@ impl Moment {
 /// `bode from input to outputs over f1 .. f2`.
 #[derive(Clone, Debug)]
 pub struct Bode {
-    /// The driven input.
-    pub input: VarId,
+    /// The driven input, and which element of it, from 0.
+    pub input: (VarId, usize),
     /// The outputs, with their printed names.
     pub outputs: Vec<(String, ExprId, Quantity)>,
     /// From and to in Hz, of parameters alone; without them it is that of what was measured.

@@ -380,7 +380,7 @@ impl Printer<'_> {
                 .iter()
                 .map(|(name, ..)| name.as_str())
                 .collect();
-            let input = &self.flat.variables[bode.input].name;
+            let input = self.flat.variables[bode.input.0].element_name(bode.input.1);
             let band = bode.band.map_or_else(String::new, |(from, to)| {
                 let (from, to) = (self.names.expr(from), self.names.expr(to));
                 format!(" over {from} .. {to} Hz")
@@ -393,7 +393,7 @@ impl Printer<'_> {
         }
         for measured in &experiment.measured_responses {
             let bode = &experiment.bodes[measured.place.0];
-            let input = &self.flat.variables[bode.input].name;
+            let input = self.flat.variables[bode.input.0].element_name(bode.input.1);
             let output = &bode.outputs[measured.place.1].0;
             let deviation = measured.deviation.as_ref();
             let noise = deviation.map_or_else(String::new, |d| format!(" ~ {}", self.scaled(d)));

@@ -85,7 +85,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
             .bodes
             .iter()
             .map(|bode| {
-                let name = dae.variables[bode.input].name.clone();
+                let name = dae.variables[bode.input.0].element_name(bode.input.1);
                 let outputs = bode
                     .outputs
                     .iter()
@@ -97,8 +97,8 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                 let mut at = 0;
                 let mut input_output = None;
                 for output in &dae.outputs {
-                    if output.names.len() == 1 && output.names[0] == name {
-                        input_output = Some(at);
+                    if let Some(place) = output.names.iter().position(|own| *own == name) {
+                        input_output = Some(at + place);
                         break;
                     }
                     at += output.names.len();

@@ -45,8 +45,10 @@ pub enum Neutral {
 pub fn sizes(program: &Program, run: &Run, neutral: Neutral) -> Vec<Size> {
     let sizes = program.parameters.iter().filter(|p| p.is_size);
     sizes
-        .filter_map(|parameter| {
-            let given = run.parameters[parameter.place];
+        .flat_map(|parameter| parameter.place..parameter.place + parameter.len)
+        .filter_map(|place| {
+            let (parameter, path) = program.parameter_at(place)?;
+            let given = run.parameters[place];
             let largest = parameter
                 .range
                 .map_or(0.0, |(from, to)| from.abs().max(to.abs()));
@@ -58,7 +60,7 @@ pub fn sizes(program: &Program, run: &Run, neutral: Neutral) -> Vec<Size> {
             Some(Size {
                 value,
                 unit: NamedUnit::usual(parameter.dimension),
-                path: parameter.name.clone(),
+                path,
             })
         })
         .collect()

@@ -47,6 +47,9 @@ fn signs_and_their_words_are_the_same_unit() {
         ("mΩ", "mohm"),
         ("°", "deg"),
         ("°C", "degC"),
+        ("\u{2103}", "degC"),
+        ("\u{2109}", "degF"),
+        ("\u{212a}", "K"),
     ] {
         assert_eq!(parse_unit(sign), parse_unit(word), "{sign}");
     }
