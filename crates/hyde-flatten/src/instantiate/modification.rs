@@ -63,7 +63,8 @@ fn modifiers_below<'a>(
     for change in changes {
         let mut parts = change.target.parts.iter();
         if parts.any(|part| !part.subscripts.is_empty()) {
-            model.report(refused::modifies_one_element(&change.target));
+            let inner = change.changes.first().map(|inner| &inner.target);
+            model.report(refused::modifies_one_element(&change.target, inner));
             continue;
         }
         let mut target = above.to_vec();

@@ -88,9 +88,17 @@ diagnostics! {
     fn nothing_to_modify(name: &str, here: Span) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "changes nothing";
     }
-    fn modifies_one_element(target: &Reference) = error UnknownModification {
+    /// `inner` is what is changed inside the element, if that is in parentheses.
+    fn modifies_one_element(target: &Reference, inner: Option<&Reference>) = error UnknownModification {
         "a modification cannot change one element of an array"; at target.span, "one element";
-        help "give each element its value: `{} = {{…, …}}`; `--set` and `vary` set one element", target.dotted();
+        match inner {
+            Some(inner) => {
+                help "give each element its value: `{}({} = {{…, …}})`; `--set` and `vary` set one element", target.dotted(), inner.dotted();
+            }
+            None => {
+                help "give each element its value: `{} = {{…, …}}`; `--set` and `vary` set one element", target.dotted();
+            }
+        }
     }
     fn no_element_to_modify(name: &str, here: Span, class: &str, known: &[&str]) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "`{class}` has no such element";
