@@ -12,23 +12,12 @@ pub(crate) fn with_values(flat: &FlatModel, settings: &BTreeMap<String, f64>) ->
             continue;
         }
         for element in 0..parameter.size() {
-            let name = match parameter.len {
-                None => parameter.name.clone(),
-                Some(_) => format!("{}[{}]", parameter.name, element + 1),
-            };
-            let Some(&value) = settings.get(&name) else {
+            let Some(value) = parameter.setting(element, settings) else {
                 continue;
             };
             let own = found.get_or_insert_with(|| flat.clone());
             let value = own.exprs.constant(value);
-            let size = own.parameters[param].size();
-            let list = &mut own.parameters[param].value;
-            if list.len() < size
-                && let Some(&one) = list.first()
-            {
-                *list = vec![one; size];
-            }
-            list[element] = value;
+            own.parameters[param].set(element, value, &mut own.exprs);
         }
     }
     found

@@ -1,8 +1,10 @@
 //! Variables, parameters and record columns, as both stages hold them.
 
+use crate::ExprArena;
 use crate::id::{ClockId, ColumnId, DelayId, ExprId, VarId};
 use hyde_diag::{Origin, Span};
 use hyde_units::{Allowed, Dimension, Kind, NamedUnit};
+use std::collections::BTreeMap;
 
 /// What a value means: its dimension, and the unit in which people read it.
 #[derive(Clone, Debug, PartialEq)]
@@ -253,6 +255,35 @@ impl Parameter {
             source: None,
             origin,
         }
+    }
+
+    /// The name of an element (counted from 0): `k[3]`, or the plain name of a scalar.
+    #[must_use]
+    pub fn element_name(&self, element: usize) -> String {
+        match self.len {
+            None => self.name.clone(),
+            Some(_) => format!("{}[{}]", self.name, element + 1),
+        }
+    }
+
+    /// What an element (counted from 0) is set to from outside, if it is.
+    #[must_use]
+    pub fn setting(&self, element: usize, settings: &BTreeMap<String, f64>) -> Option<f64> {
+        let own = settings.get(&self.element_name(element));
+        // The only element of an array is named without its number too.
+        let only = || settings.get(&self.name).filter(|_| self.size() == 1);
+        own.or_else(only).copied()
+    }
+
+    /// Gives an element (counted from 0) another value; the others keep theirs.
+    pub fn set(&mut self, element: usize, value: ExprId, exprs: &mut ExprArena) {
+        if let [all] = self.value[..] {
+            let counters = (0_i32..).take(self.size());
+            self.value = counters
+                .map(|counter| exprs.at_counter(all, counter))
+                .collect();
+        }
+        self.value[element] = value;
     }
 
     /// Number of elements; 1 for a scalar.

@@ -3,7 +3,7 @@
 mod calls;
 mod chirp;
 mod clock;
-mod delay;
+pub(crate) mod delay;
 mod derivative;
 mod edge;
 mod extremum;

@@ -5,6 +5,7 @@
 
 use crate::instance::{InstanceId, Lowering, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::model::call::delay::moves_with_counter;
 use crate::refusals::values as refused;
 use hyde_ir::{Expr as Ir, ExprId, Id as _, ParamId};
 use hyde_syntax::ast::Expr;
@@ -47,7 +48,7 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn constant_of(&mut self, typed: &Typed) -> Option<f64> {
         let errors = self.diagnostics.error_count();
         let value = self.evaluate(typed.id);
-        if value.is_none() && self.diagnostics.error_count() == errors {
+        if value.is_none() && self.diagnostics.error_count() == errors && !self.needs_unrolling {
             self.report(refused::expression_not_constant(typed.span));
         }
         value
@@ -71,6 +72,11 @@ impl<'a> Model<'a, '_> {
             .into_iter()
             .map(|id| self.flat.exprs[id])
             .collect();
+        if leaves.iter().any(|&leaf| moves_with_counter(leaf)) {
+            // Each turn of the loop has a value of its own.
+            self.needs_unrolling = true;
+            return None;
+        }
         let mut values = Vec::new();
         for leaf in leaves {
             if let Ir::Param(param, index) = leaf {
@@ -113,15 +119,24 @@ impl<'a> Model<'a, '_> {
         if self.parameters[param.index()].state != Lowering::Done {
             self.lower_parameter(param);
         }
-        if let Some(&value) = self.input.settings.get(&self.flat.parameters[param].name) {
+        let settings = self.input.settings;
+        if let Some(value) = self.flat.parameters[param].setting(element, settings) {
             if structural {
                 // What else uses the parameter sees the value that is set as well.
-                self.flat.parameters[param].value = vec![self.flat.exprs.constant(value)];
+                let exprs = &mut self.flat.exprs;
+                let constant = exprs.constant(value);
+                self.flat.parameters[param].set(element, constant, exprs);
             }
             return Some(value);
         }
         let values = &self.flat.parameters[param].value;
-        let value = *values.get(element).or_else(|| values.first())?;
+        let value = match (values.as_slice(), i32::try_from(element)) {
+            ([all], Ok(counter)) => {
+                let all = *all;
+                self.flat.exprs.at_counter(all, counter)
+            }
+            (each, _) => *each.get(element)?,
+        };
         self.value_of(value, structural)
     }
 }

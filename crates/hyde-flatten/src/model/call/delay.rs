@@ -81,7 +81,9 @@ impl<'a> Model<'a, '_> {
             return None;
         }
         let Some(value) = value else {
-            self.not_constant("the time of a delay", by.span);
+            if !self.needs_unrolling {
+                self.not_constant("the time of a delay", by.span);
+            }
             return None;
         };
         if !(value >= 0.0 && value.is_finite()) {
@@ -200,7 +202,7 @@ impl<'a> Model<'a, '_> {
 }
 
 /// A leaf that is another one at every value of a counter.
-pub(super) fn moves_with_counter(expr: Ir) -> bool {
+pub(crate) fn moves_with_counter(expr: Ir) -> bool {
     match expr {
         Ir::Counter => true,
         Ir::Param(_, index) | Ir::Var(_, index) | Ir::Der(_, index) | Ir::Pre(_, index) => {
