@@ -98,7 +98,7 @@ impl CalibrationPlan {
                         if variation.what != Varied::Part {
                             diagnostics.push(refusals::varies_no_parameter(variation.target.span));
                         }
-                        let name = variation.target.dotted();
+                        let name = hyde_syntax::format_reference(&variation.target);
                         let per = variation.per.as_ref().map(|per| Per {
                             label: per.text.clone(),
                             span: per.span,

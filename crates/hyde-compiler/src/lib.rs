@@ -8,6 +8,7 @@ mod ideal;
 mod known;
 mod library_trees;
 mod load;
+mod modifications;
 mod named;
 mod parses;
 mod pipeline;
@@ -30,6 +31,7 @@ pub use known::{
     candidates, laws, meaning,
 };
 pub use load::{File, Find, Packages, Place, check_name, load};
+pub use modifications::modifications;
 pub use parses::parses;
 pub use pipeline::{Compiled, Request, analyze, compile, compile_unless, compile_with};
 pub use states::States;

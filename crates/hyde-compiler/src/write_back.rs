@@ -8,7 +8,9 @@
 //! ```
 
 use crate::load::File;
+use crate::modifications::{behind, modifications};
 use hyde_flatten::{Candidate, Knob};
+use hyde_program::Program;
 use hyde_syntax::ast;
 use hyde_units::{NamedUnit, significant};
 use std::fmt::Write as _;
@@ -47,15 +49,15 @@ pub struct Written {
 /// Digits of a number that was found: more than it is known to, so that nothing is lost by writing it down.
 const DIGITS: usize = 7;
 
-/// Writes down what was found. `about` says where the numbers come from, one line each.
-///
-/// Elements of arrays cannot be given values from outside; their calibrated values are left to a comment.
+/// Writes down what was found. `at` is the program that was calibrated with its parameter vector, and `about` says where the
+/// numbers come from, one line each.
 #[must_use]
 pub fn write_back(
     file: &File,
     text: &str,
     (model, experiment): (&str, Option<&str>),
     (found, calibrated): (&[Found<'_>], &[Calibrated]),
+    at: (&Program, &[f64]),
     about: &[String],
 ) -> Written {
     let taken = |name: &str| {
@@ -106,19 +108,7 @@ pub fn write_back(
         };
         effects.push(format!("{name}{values} on {}", one.candidate.site));
     }
-    let (scalars, elements): (Vec<_>, Vec<_>) =
-        calibrated.iter().partition(|one| !one.path.contains('['));
-    for element in elements {
-        let _ = writeln!(
-            out,
-            "// {}",
-            assigned(&element.path, element.value, &element.unit)
-        );
-    }
-    let changes: Vec<String> = scalars
-        .iter()
-        .map(|one| assigned(&one.path, one.value, &one.unit))
-        .collect();
+    let changes = modifications(calibrated, at, &|value| significant(value, DIGITS));
     let _ = write!(out, "model {new_model} = {model}");
     if !changes.is_empty() {
         let _ = write!(out, "(\n  {})", changes.join(",\n  "));
@@ -172,11 +162,8 @@ fn setting(candidate: &Candidate, name: &str, value: f64) -> String {
     }
 }
 
-/// `M = 318.2 [kg]`
+/// `dF = 181 [N]`
 fn assigned(name: &str, si: f64, unit: &NamedUnit) -> String {
     let number = significant(unit.unit().from_si(si), DIGITS);
-    match unit.text() {
-        "" | "1" => format!("{name} = {number}"),
-        text => format!("{name} = {number} [{text}]"),
-    }
+    format!("{name} = {number}{}", behind(unit))
 }

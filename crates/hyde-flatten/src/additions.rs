@@ -2,7 +2,7 @@
 
 use crate::candidates::Candidate;
 use hyde_diag::{FileId, Span};
-use hyde_syntax::ast::{Name, Part, Reference};
+use hyde_syntax::ast::Reference;
 
 /// Effects put on a model from outside its text. Their parameters have the values declared; all that are not structural
 /// can be set without compiling anew.
@@ -57,7 +57,8 @@ impl Additions {
         let from: usize = first.parse().unwrap_or(1);
         let taken = |name: &str| {
             self.list.iter().any(|other| {
-                path(&other.name) == path(name) && written(&other.site) == candidate.site
+                path(&other.name) == path(name)
+                    && hyde_syntax::format_reference(&other.site) == candidate.site
             })
         };
         let mut names = (from..).map(|number| match number {
@@ -66,9 +67,10 @@ impl Additions {
         });
         let name = names.find(|name| !taken(name)).unwrap_or_default();
         let found = path(&name);
+        let nowhere = Span::new(file, 0, 0);
         self.list.push(Addition {
-            effect: reference(file, &candidate.effect),
-            site: reference(file, &candidate.site),
+            effect: Reference::of_path(&candidate.effect, nowhere),
+            site: Reference::of_path(&candidate.site, nowhere),
             name,
         });
         found
@@ -84,25 +86,5 @@ impl Additions {
 
     pub(crate) fn keeps_neutral(&self) -> bool {
         self.keep_neutral
-    }
-}
-
-fn written(reference: &Reference) -> String {
-    reference.dotted()
-}
-
-/// A dotted name as a reference that stands nowhere; subscripts stay part of the words.
-fn reference(file: FileId, dotted: &str) -> Reference {
-    let span = Span::new(file, 0, 0);
-    let part = |word: &str| Part {
-        name: Name {
-            text: word.to_owned(),
-            span,
-        },
-        subscripts: Vec::new(),
-    };
-    Reference {
-        parts: dotted.split('.').map(part).collect(),
-        span,
     }
 }

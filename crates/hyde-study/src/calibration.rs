@@ -153,7 +153,15 @@ fn plan(
             None => refused::no_experiment(&source.experiment, source.span),
             Some(known) if !plan.models.contains(&known.model.dotted()) => {
                 let (model, own) = (known.model.dotted(), (&*source.experiment, source.span));
-                refused::experiment_of_another_model(own, &model, &plan.name, &plan.models)
+                let mut experiments = file.experiments();
+                let of_experiment = experiments.any(|own| plan.models == [own.name.text.clone()]);
+                refused::experiment_of_another_model(
+                    own,
+                    &model,
+                    &plan.name,
+                    &plan.models,
+                    of_experiment,
+                )
             }
             Some(known) => {
                 if !found.iter().any(|own| own.name.text == known.name.text) {

@@ -329,10 +329,8 @@ impl Project {
         let mut driven: Vec<String> = Vec::new();
         for item in experiment.into_iter().flat_map(|own| &mut own.items) {
             if let ExperimentItem::Stimulus(drives) = item {
-                let element = |drive: &Drive| hyde_syntax::format_reference(&drive.target);
-                let names = |drive: &Drive| [drive.target.dotted(), element(drive)];
-                driven.extend(drives.iter().flat_map(names));
-                drives.retain(|drive| !names(drive).iter().any(|name| inputs.contains(name)));
+                driven.extend(drives.iter().flat_map(Drive::names));
+                drives.retain(|drive| !inputs.iter().any(|input| drive.drives(input)));
             }
         }
         // A stimulus of an element is named by the array as well.

@@ -178,12 +178,15 @@ fn what_was_found_is_written_down_and_compiles_to_the_same_numbers() {
         value,
         unit: plain.program.parameter(path).unwrap().0.unit.clone(),
     });
+    let mut p = vec![0.0; plain.program.n_parameters];
+    plain.program.kernels.parameters(&[], &mut p);
     let about = ["Found by a test, from no record.".to_owned()];
     let written = write_back(
         &loaded.file,
         example.text(),
         ("Axis", Some("bench")),
         (&found, &calibrated),
+        (&plain.program, &p),
         &about,
     );
     let behind = written

@@ -40,7 +40,7 @@ pub fn varied(file: &File, draft: &Draft, model: &str, options: &[usize]) -> (Fi
             text: format!("{model} with effects"),
             span,
         };
-        let base = reference(&model, span);
+        let base = Reference::of_path(&model, span);
         model.clone_from(&name.text);
         Arc::make_mut(tree).items.push(Item::Class(Class {
             kind: ClassKind::Model,
@@ -156,7 +156,7 @@ fn drive(experiment: &mut Experiment, target: &Reference, value: &Expr) {
     let name = hyde_syntax::format_reference(target);
     for item in &mut experiment.items {
         if let ExperimentItem::Stimulus(drives) = item {
-            drives.retain(|drive| hyde_syntax::format_reference(&drive.target) != name);
+            drives.retain(|drive| !drive.drives(&name));
         }
     }
     let drive = Drive {
@@ -165,18 +165,4 @@ fn drive(experiment: &mut Experiment, target: &Reference, value: &Expr) {
         noise: None,
     };
     experiment.items.push(ExperimentItem::Stimulus(vec![drive]));
-}
-
-fn reference(dotted: &str, span: hyde_diag::Span) -> Reference {
-    let part = |word: &str| Part {
-        name: Name {
-            text: word.to_owned(),
-            span,
-        },
-        subscripts: Vec::new(),
-    };
-    Reference {
-        parts: dotted.split('.').map(part).collect(),
-        span,
-    }
 }

@@ -7,7 +7,7 @@ use crate::law_sites::full_name;
 use crate::model::Model;
 use crate::refusals::laws as refused;
 use hyde_ir::{ExprId, LawInput, LawPiece, LawText};
-use hyde_syntax::ast::{Binary, Expr, ExprKind, Name, Part, Reference};
+use hyde_syntax::ast::{Binary, Expr, ExprKind, Reference};
 
 /// Stands for an input in a text, with its number and a `_` behind.
 const OPEN: &str = "input_of_shape_";
@@ -63,31 +63,16 @@ fn open_calls<'a>(model: &Model<'a, '_>, draft: &Draft<'a>, expr: &mut Expr) {
             open_calls(model, draft, &mut value);
             *expr = value;
         } else if let Some(number) = draft.input(word) {
-            *name = word_at(format!("{OPEN}{number}_"), name);
+            *name = Reference::of_path(&format!("{OPEN}{number}_"), name.span);
         }
         return;
     }
     if let ExprKind::Call(function, _) = &mut expr.kind
         && let Some((file, class)) = model.function_named(function)
     {
-        *function = word_at(full_name(model.input, file, class), function);
+        *function = Reference::of_path(&full_name(model.input, file, class), function.span);
     }
     for child in expr.children_mut() {
         open_calls(model, draft, child);
-    }
-}
-
-/// A name that may have dots in the place of another one.
-fn word_at(text: String, place: &Reference) -> Reference {
-    let parts = text.split('.').map(|part| Part {
-        name: Name {
-            text: part.to_owned(),
-            span: place.span,
-        },
-        subscripts: Vec::new(),
-    });
-    Reference {
-        parts: parts.collect(),
-        span: place.span,
     }
 }

@@ -37,6 +37,8 @@ pub(super) fn written(
         values: Vec::new(),
     }));
     let program = &told.calibration.compiled.program;
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&told.calibration.set, &mut p);
     let unit = |name: &str| {
         let known = program.parameter(name);
         known.map_or_else(
@@ -92,6 +94,7 @@ pub(super) fn written(
         &text,
         (&project.model, project.experiment.as_deref()),
         (&found, &calibrated),
+        (program, &p),
         &about,
     )
 }

@@ -1,9 +1,11 @@
 //! The calibrated models as text: shared values in one, and one on top of it for each set of values that some records have.
 
-use super::si_unit;
-use crate::JointCalibration;
+use super::unit;
+use crate::{Calibration, JointCalibration};
 use hyde_calibrate::Fit;
-use std::fmt::Write as _;
+use hyde_compiler::{Calibrated, modifications};
+use hyde_program::Program;
+use hyde_units::{Dimension, NamedUnit};
 
 /// The name of the file's first model, and of the file.
 pub fn name(calibration: &JointCalibration) -> String {
@@ -37,12 +39,26 @@ pub fn text(calibration: &JointCalibration, fit: &Fit) -> String {
         }
         let base = of_model(model);
         let doc = format!("calibrated by `{}`", calibration.plan.name);
-        out.push(one(calibration, fit, &base, model, &shared, &doc));
+        let Some(own) = experiments.iter().find(|own| own.project.model == *model) else {
+            continue;
+        };
+        let program = &own.compiled.program;
+        let mut p = vec![0.0; program.n_parameters];
+        program.kernels.parameters(&own.set, &mut p);
+        let mut values = found(calibration, fit, &shared);
+        for value in &values {
+            if let Some((parameter, element)) = program.parameter(&value.path) {
+                p[parameter.place + element] = value.value;
+            }
+        }
+        values.extend(settings(own, &values));
+        out.push(one((&base, model), &values, (program, &p), &doc));
         used.push(base.clone());
         for set in sets {
             let (name, at) = called(calibration, &set, &base, &used);
             let doc = format!("{doc} at {at}");
-            out.push(one(calibration, fit, &name, &base, &set, &doc));
+            let values = found(calibration, fit, &set);
+            out.push(one((&name, &base), &values, (program, &p), &doc));
             used.push(name);
         }
     }
@@ -93,38 +109,47 @@ pub fn word(text: &str) -> String {
     parts.collect::<Vec<_>>().join("_")
 }
 
-/// A model with some values. Elements of an array are told beside it: no modification sets one.
+/// What is set from outside and not calibrated, of what the model has.
+fn settings(own: &Calibration, found: &[Calibrated]) -> Vec<Calibrated> {
+    let set = own.project.set().into_iter();
+    let set = set.filter(|(path, _)| found.iter().all(|own| own.path != *path));
+    let set = set.filter_map(|(path, value)| {
+        let (parameter, _) = own.compiled.program.parameter(&path)?;
+        let unit = NamedUnit::usual(parameter.unit.unit().dimension);
+        Some(Calibrated { path, value, unit })
+    });
+    set.collect()
+}
+
+/// Some of the numbers as parameters with their values, in SI units.
+fn found(calibration: &JointCalibration, fit: &Fit, numbers: &[usize]) -> Vec<Calibrated> {
+    let one = |number: &usize| {
+        let parameter = &fit.parameters[*number];
+        let unit = unit(calibration, *number);
+        let dimension = unit.map_or(Dimension::DIMENSIONLESS, |own| own.unit().dimension);
+        Calibrated {
+            path: parameter.name.clone(),
+            value: parameter.value,
+            unit: NamedUnit::usual(dimension),
+        }
+    };
+    numbers.iter().map(one).collect()
+}
+
+/// A model with some values; `at` is its program, with the parameter vector that it has before.
 fn one(
-    calibration: &JointCalibration,
-    fit: &Fit,
-    name: &str,
-    of: &str,
-    numbers: &[usize],
+    (name, of): (&str, &str),
+    values: &[Calibrated],
+    at: (&Program, &[f64]),
     doc: &str,
 ) -> String {
-    let mut out = String::new();
-    let mut values: Vec<String> = Vec::new();
-    for &number in numbers {
-        let parameter = &fit.parameters[number];
-        let unit = si_unit(calibration, number).filter(|unit| unit != "1");
-        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
-        let value = format!("{} = {:?}{unit}", parameter.name, parameter.value);
-        if parameter.name.contains('[') {
-            let _ = writeln!(out, "// {value}");
-        } else {
-            values.push(format!("  {value}"));
-        }
-    }
+    let values = modifications(values, at, &|value| format!("{value:?}"));
     let values = match values.is_empty() {
         true => String::new(),
-        false => format!("(\n{}\n)", values.join(",\n")),
+        false => format!("(\n  {}\n)", values.join(",\n  ")),
     };
-    let _ = writeln!(
-        out,
-        "model {name} = {of}{values} \"{}\";",
-        doc.replace('"', "'")
-    );
-    out
+    let doc = doc.replace('"', "'");
+    format!("model {name} = {of}{values} \"{doc}\";\n")
 }
 
 #[cfg(test)]

@@ -18,11 +18,14 @@ diagnostics! {
         help "name an experiment of the file, `fit bench(\"fit-*.csv\");`";
     }
     fn experiment_of_another_model(
-        (experiment, here): (&str, Span), model: &str, calibration: &str, models: &[String],
+        (experiment, here): (&str, Span), model: &str, calibration: &str, models: &[String], of_experiment: bool,
     ) = error BadStudy {
         "`{experiment}` is an experiment of `{model}`, the calibration is of `{}`", models.join("`, `");
         at here, "asked for here";
-        help "name all models that share parameters: `calibrate {calibration} of {}, {model}`", models.join(", ");
+        match (of_experiment) {
+            true => { help "a calibration is of a model: `calibrate {calibration} of {model}`"; }
+            false => { help "name all models that share parameters: `calibrate {calibration} of {}, {model}`", models.join(", "); }
+        }
     }
     fn model_twice(model: &str, study: Span) = error BadStudy {
         "the model `{model}` is named twice"; at study, "in this study";

@@ -63,6 +63,20 @@ pub struct Drive {
     pub noise: Option<Expr>,
 }
 
+impl Drive {
+    /// The target as written, `F[2]`, and the array of which it is an element, `F`; twice the same if it is none.
+    #[must_use]
+    pub fn names(&self) -> [String; 2] {
+        [crate::format_reference(&self.target), self.target.dotted()]
+    }
+
+    /// Whether it drives what is named: `F[2]`, or all of `F` or an element of it.
+    #[must_use]
+    pub fn drives(&self, name: &str) -> bool {
+        self.names().iter().any(|own| own == name)
+    }
+}
+
 /// `file.i = motor.i ~ 0.02 [A]`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {

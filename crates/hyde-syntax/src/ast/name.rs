@@ -1,6 +1,6 @@
 //! Names: words, dotted references, units.
 
-use super::Expr;
+use super::{Expr, ExprKind};
 use hyde_diag::Span;
 
 /// A word and where it stands.
@@ -31,6 +31,31 @@ pub struct Part {
 }
 
 impl Reference {
+    /// The path of an instance or a variable, `m[2].a.s`, or the full name of a class, as a reference that stands at a place.
+    #[must_use]
+    pub fn of_path(path: &str, span: Span) -> Self {
+        let part = |text: &str| {
+            let element = text.strip_suffix(']').and_then(|text| text.split_once('['));
+            let element = element.and_then(|(array, number)| Some((array, number.parse().ok()?)));
+            let (word, subscript) = match element {
+                Some((array, number)) => (array, Some(ExprKind::Number(number, None))),
+                None => (text, None),
+            };
+            let subscripts = subscript.map(|kind| Expr { kind, span });
+            Part {
+                name: Name {
+                    text: word.to_owned(),
+                    span,
+                },
+                subscripts: subscripts.into_iter().collect(),
+            }
+        };
+        Self {
+            parts: path.split('.').map(part).collect(),
+            span,
+        }
+    }
+
     /// The reference as text, without subscripts.
     #[must_use]
     pub fn dotted(&self) -> String {
