@@ -303,7 +303,7 @@ pub(crate) fn setup_with<'r>(
     parameters: Vec<f64>,
 ) -> Setup<'r> {
     let constant = |which| program.kernels.constant(which, &parameters);
-    let rtol = constant(Constant::Rtol).unwrap_or(1e-6);
+    let rtol = rtol_of(program, &parameters);
     let atol = constant(Constant::Atol).unwrap_or(ATOL * rtol);
     let max_step_s = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
     let ((start_s, _), stop_s) = extent(program, records, &parameters);
@@ -314,6 +314,13 @@ pub(crate) fn setup_with<'r>(
     (setup.rtol, setup.atol) = (rtol, atol);
     setup.max_step_s = max_step_s;
     setup
+}
+
+/// The relative tolerance of runs of a program with complete parameters, if no option says another one.
+#[must_use]
+pub fn rtol_of(program: &Program, parameters: &[f64]) -> f64 {
+    let own = program.kernels.constant(Constant::Rtol, parameters);
+    own.unwrap_or(1e-6)
 }
 
 /// When a run starts, with the record that begins there if that is why, and when it ends; in s.

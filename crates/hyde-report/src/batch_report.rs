@@ -250,7 +250,8 @@ impl BatchReport {
         Table {
             rows: rows.into_iter().map(|(_, row)| row).collect(),
             note: Some(
-                "Spearman's: +1 where the measure rises whenever the input does, −1 where it falls."
+                "Spearman's: +1 where the measure rises whenever the input does, −1 where it falls. Empty where all cases have \
+                 one value, as far as the tolerance of their runs can tell."
                     .to_owned(),
             ),
             ..Table::with_columns(&heads)

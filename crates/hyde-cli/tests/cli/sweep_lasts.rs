@@ -126,7 +126,7 @@ fn one_process_at_a_time_and_one_batch_a_folder() {
     let refused = hyde(&["sweep", &other, "s", "--out", &out]);
     assert_eq!(status(&refused), 2);
     assert!(
-        errors(&refused).contains("contains another batch: the model differ"),
+        errors(&refused).contains("contains another batch: it differs in the model"),
         "{}",
         errors(&refused)
     );

@@ -12,6 +12,7 @@
 
 use super::outcome::{Outcome, Trajectory};
 use super::plan::{Plan, Value};
+use crate::rtol_of;
 use hyde_program::Program;
 use hyde_signal::parquet::{Field, Kind, Values};
 use hyde_units::{Dimension, NamedUnit};
@@ -37,14 +38,17 @@ pub struct Dataset {
     pub measures: Vec<Measured>,
     /// What is kept over time.
     pub kept: Vec<Measured>,
+    /// The relative tolerance of its runs.
+    pub rtol: f64,
 }
 
 impl Dataset {
-    /// The columns for a plan: what the program of its first variant measures, and of `keep` what it has over time.
+    /// The columns for a plan: what the program of its first variant measures, and of `keep` what it has over time; `parameters`
+    /// are complete.
     ///
     /// # Errors
     /// The name of `keep` that no variable has.
-    pub fn new(program: &Program, keep: &[String]) -> Result<Self, String> {
+    pub fn new(program: &Program, parameters: &[f64], keep: &[String]) -> Result<Self, String> {
         let measures = program.experiment.measures.iter().map(|measure| Measured {
             name: measure.name.clone(),
             unit: measure.unit.clone(),
@@ -54,7 +58,7 @@ impl Dataset {
         for pattern in keep {
             let fits = |name: &str| match pattern.strip_suffix('*') {
                 Some(start) => name.starts_with(start),
-                None => name == pattern,
+                None => name == pattern || is_element(name, pattern),
             };
             let outputs = program.outputs.iter().filter(|output| !output.auxiliary);
             let before = kept.len();
@@ -74,6 +78,7 @@ impl Dataset {
         Ok(Self {
             measures: measures.collect(),
             kept,
+            rtol: rtol_of(program, parameters),
         })
     }
 
@@ -232,4 +237,11 @@ enum Cell {
 
 fn integer(number: u64) -> Cell {
     Cell::Integer(i64::try_from(number).unwrap_or(i64::MAX))
+}
+
+/// Whether a name is that of an element of an array.
+fn is_element(name: &str, array: &str) -> bool {
+    let rest = name.strip_prefix(array);
+    let inside = rest.and_then(|rest| rest.strip_prefix('[')?.strip_suffix(']'));
+    inside.is_some_and(|number| number.parse::<usize>().is_ok())
 }

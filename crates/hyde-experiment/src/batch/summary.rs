@@ -22,7 +22,9 @@ pub struct MeasureSummary {
     pub count: usize,
     /// Quantiles at [`QUANTILES`], SI.
     pub quantiles: [f64; 7],
-    /// Spearman's rank correlation with each numerical input that varies, by its number.
+    /// Whether all cases have one value, as far as the tolerance of their runs can tell.
+    pub same: bool,
+    /// Spearman's rank correlation with each numerical input that varies, by its number; none where all have one value.
     pub correlations: Vec<(usize, f64)>,
 }
 
@@ -107,7 +109,7 @@ impl Gathered {
         let ranks: Vec<Option<Vec<f64>>> = self
             .inputs
             .iter()
-            .map(|column| varying_ranks(column))
+            .map(|column| ranks_of(column, 0.0).filter(|ranks| varies(ranks)))
             .collect();
         for (measure, column) in self.measures.iter().enumerate() {
             if dataset.measures[measure].expectation {
@@ -128,15 +130,19 @@ impl Gathered {
                 .filter(|value| !value.is_nan())
                 .collect();
             sorted.sort_unstable_by(f64::total_cmp);
-            let own = varying_ranks(column);
+            let own = ranks_of(column, dataset.rtol);
+            let varying = own.as_ref().filter(|ranks| varies(ranks));
             let correlations = ranks.iter().enumerate().filter_map(|(input, ranks)| {
-                let value = correlation(ranks.as_ref()?, own.as_ref()?)?;
+                let value = correlation(ranks.as_ref()?, varying?)?;
                 Some((input, value))
             });
             summary.measures.push(MeasureSummary {
                 measure,
                 count: sorted.len(),
                 quantiles: QUANTILES.map(|p| quantile(&sorted, p)),
+                same: own
+                    .as_ref()
+                    .is_some_and(|ranks| ranks.len() > 1 && !varies(ranks)),
                 correlations: correlations.collect(),
             });
             let mut order: Vec<usize> = (0..column.len())
@@ -154,25 +160,37 @@ impl Gathered {
     }
 }
 
-/// Ranks from 1, equal values share their mean; `None` where a value is missing or all are equal.
-fn varying_ranks(values: &[f64]) -> Option<Vec<f64>> {
+/// Ranks from 1; `None` where a value is missing. Values that are one within a part of the largest magnitude share their mean:
+/// what the tolerance of the runs does not promise has no order.
+fn ranks_of(values: &[f64], part: f64) -> Option<Vec<f64>> {
     if values.iter().any(|value| value.is_nan()) {
         return None;
     }
+    let finite = values
+        .iter()
+        .map(|value| value.abs())
+        .filter(|value| value.is_finite());
+    let largest = finite.fold(0.0, f64::max);
+    let one = |first: f64, value: f64| value <= first + part * largest;
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
     let mut ranks = vec![0.0; values.len()];
-    let mut groups = 0;
     let mut at = 0;
-    for group in order.chunk_by(|&a, &b| values[a].total_cmp(&values[b]).is_eq()) {
-        let mean = at as f64 + 0.5 * (group.len() + 1) as f64;
-        for &place in group {
+    while let Some(first) = order.get(at) {
+        let rest = &order[at..];
+        let group = rest.partition_point(|&place| one(values[*first], values[place]));
+        let mean = at as f64 + 0.5 * (group + 1) as f64;
+        for &place in &rest[..group] {
             ranks[place] = mean;
         }
-        at += group.len();
-        groups += 1;
+        at += group;
     }
-    (groups > 1).then_some(ranks)
+    Some(ranks)
+}
+
+/// Whether not all ranks are the same.
+fn varies(ranks: &[f64]) -> bool {
+    ranks.iter().any(|rank| rank.total_cmp(&ranks[0]).is_ne())
 }
 
 #[cfg(test)]
@@ -182,7 +200,7 @@ mod tests {
 
     #[test]
     fn rank_correlations_see_order_and_share_ties() {
-        let ranks = |values: &[f64]| varying_ranks(values).unwrap();
+        let ranks = |values: &[f64]| ranks_of(values, 0.0).unwrap();
         assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0]), [3.5, 1.0, 3.5, 2.0]);
         let rising = ranks(&[1.0, 10.0, 100.0]);
         assert_eq!(correlation(&rising, &ranks(&[0.1, 0.2, 0.3])), Some(1.0));
@@ -191,6 +209,16 @@ mod tests {
         let found =
             correlation(&ranks(&[1.0, 2.0, 3.0, 4.0]), &ranks(&[2.0, 1.0, 4.0, 3.0])).unwrap();
         assert!((found - 0.6).abs() < 1e-15); // Small integers: rounding of one root.
-        assert!(varying_ranks(&[1.0, 1.0]).is_none());
+        assert!(!varies(&ranks(&[1.0, 1.0])));
+    }
+    #[test]
+    fn what_the_tolerance_does_not_promise_has_no_order() {
+        let ranks = |values: &[f64]| ranks_of(values, 1e-6).unwrap();
+        // Rounding of one number.
+        assert!(!varies(&ranks(&[0.076, 0.076 + 1e-12, 0.076 - 1e-12])));
+        assert_eq!(ranks(&[2.0, 1.0, 1.0 + 1e-7, 3.0]), [3.0, 1.5, 1.5, 4.0]);
+        assert_eq!(ranks(&[1.0, 1.00001]), [1.0, 2.0]);
+        assert_eq!(ranks(&[f64::INFINITY, 1.0]), [2.0, 1.0]);
+        assert!(ranks_of(&[1.0, f64::NAN], 1e-6).is_none());
     }
 }

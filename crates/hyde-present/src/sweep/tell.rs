@@ -97,8 +97,20 @@ pub fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str) -> Str
                 let cell = found.map_or_else(String::new, |(_, value)| format!("{value:+.2}"));
                 let _ = write!(out, " {cell:>12}");
             }
+            out.truncate(out.trim_end().len());
             out.push('\n');
         }
+    }
+    let same = summary.measures.iter().filter(|measure| measure.same);
+    let same: Vec<&str> = same
+        .map(|measure| batch.dataset.measures[measure.measure].name.as_str())
+        .collect();
+    if !same.is_empty() {
+        let (names, rtol) = (same.join(", "), batch.dataset.rtol);
+        let _ = writeln!(
+            out,
+            "\n  the same in all cases, within rtol = {rtol:e} of it: {names}"
+        );
     }
     if !summary.worst.is_empty() {
         out.push_str("\n  largest magnitudes\n");
@@ -147,7 +159,7 @@ pub fn json(batch: &Prepared, summary: &Summary, rerun: &str) -> Value {
                 .collect();
             json!({
                 "name": known.name, "unit": known.unit.text(), "count": measure.count,
-                "quantiles": quantiles, "rank_correlations": correlations,
+                "quantiles": quantiles, "same": measure.same, "rank_correlations": correlations,
             })
         })
         .collect();

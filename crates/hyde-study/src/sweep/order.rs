@@ -162,7 +162,7 @@ impl Order {
                 .map(|(name, _)| name.as_str())
                 .collect();
             return Err(format!(
-                "`{}` contains another batch: the {} differ; use another folder, or remove this one",
+                "`{}` contains another batch: it differs in the {}; use another folder, or remove this one",
                 folder.display(),
                 differs.join(" and the ")
             ));

@@ -96,7 +96,7 @@ impl Prepared {
             Ok(plan) => plan,
             Err(diagnostic) => return Err(refused(project, diagnostic)),
         };
-        let dataset = match Dataset::new(&ready.program, &draft.keep) {
+        let dataset = match Dataset::new(&ready.program, &parameters, &draft.keep) {
             Ok(dataset) => dataset,
             Err(name) => {
                 let diagnostic = refusals::keeps_nothing(&name, study.name.span);
