@@ -303,7 +303,7 @@ module.exports = grammar({
     by_steps: $ => seq('by', $.identifier, optional($.arguments)),
     at_point: $ => seq('at', $.expression),
     in_modes: $ => seq('in', list($.in_mode)),
-    in_mode: $ => seq(field('component', alias($.path, $.reference)), '=', field('mode', $.identifier)),
+    in_mode: $ => seq(field('component', $.reference), '=', field('mode', $.identifier)),
 
     _study_item: $ => choice($.vary, $.setting),
     vary: $ => seq('vary', choice(seq('effect', list($.effect_use)), list($.variation)), ';'),

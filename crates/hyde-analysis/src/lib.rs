@@ -15,7 +15,7 @@
 //! 7. `pins`: modes that fix a state exchange rows with the force that holds it (M3);
 //! 8. `clocked`: the equations of each clocked part become ordered assignments;
 //! 9. `events`: exits, `when` and `assert` become reactions;
-//! 10. `initial`: the initial system;
+//! 10. `initial`: the initial system; starts set from outside that nothing reads are told (idle_starts.rs);
 //! 11. `outputs`: what is reported;
 //! 12. `partials`: derivatives of every function; through arrays that read the same scalars by arrays of derivatives
 //!     (`shapes`); on the way how fast sines of the time turn (`turning`);
@@ -30,6 +30,7 @@ mod explicit;
 pub mod graph;
 mod held_speed;
 mod hoist;
+mod idle_starts;
 mod initial;
 mod layout;
 mod matching;
@@ -106,6 +107,7 @@ pub fn analyze(
     if diagnostics.has_errors() {
         return None;
     }
+    idle_starts::warn(&dae, settings, diagnostics);
     outputs::report(&mut dae, &mut system);
     partials::differentiate(&mut dae);
     hoist::hoist(&mut dae);

@@ -4,11 +4,12 @@
 //! 1. the classes and types of every file are indexed (`names`);
 //! 2. the model is instantiated: a tree of instances with their variables, parameters and parts, every modification
 //!    laid where it belongs (`instantiate`);
-//! 3. bindings, equations, modes, events and clocked parts are lowered to IR in the scope of their instance
+//! 3. what a clocked part computes though it is declared outside is refused (`misplaced`);
+//! 4. bindings, equations, modes, events and clocked parts are lowered to IR in the scope of their instance
 //!    (`equation`, `modes`; in model/: `lower` the expressions, `field` the fields), each with its dimension (`dimension`);
-//! 4. connection sets become equations (`connect`);
-//! 5. the experiment drives the free inputs and names what is measured (`experiment`);
-//! 6. what is known of dimensions is solved for the rest, and parameters are put in order (`finish`).
+//! 5. connection sets become equations (`connect`);
+//! 6. the experiment drives the free inputs and names what is measured (`experiment`);
+//! 7. what is known of dimensions is solved for the rest, and parameters are put in order (`finish`).
 //!
 //! Arrays and fields are not unrolled: a `for` equation or a field equation is one equation over a range.
 
@@ -31,6 +32,7 @@ mod law_shapes;
 mod law_sites;
 mod ledger;
 mod meaning;
+mod misplaced;
 mod model;
 mod modes;
 mod names;
@@ -136,6 +138,7 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
 
     // Values and equations of every instance.
     experiment::find_replays(model, root);
+    misplaced::find_misplaced(model);
     model.lower_bindings();
     allowed::check_parameters(model);
     equation::lower_equations(model);

@@ -67,6 +67,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) column_values: BTreeMap<String, ParamId>,
     /// Names whose declaration has an unknown type: their uses are no mistake of their own.
     pub(crate) undeclared: BTreeSet<&'a str>,
+    /// Continuous variables that a clocked part computes: that is told, and their uses are no mistake of their own.
+    pub(crate) misplaced: BTreeSet<VarId>,
     /// The values that elements of parameters have now, once they are known.
     pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
     /// The functions whose calls are being replaced, the outermost first, and what is known of calls.
@@ -102,6 +104,7 @@ impl<'a, 'd> Model<'a, 'd> {
             column_variables: BTreeMap::new(),
             column_values: BTreeMap::new(),
             undeclared: BTreeSet::new(),
+            misplaced: BTreeSet::new(),
             current_values: BTreeMap::new(),
             calls: Calls::default(),
             needs_unrolling: false,

@@ -54,10 +54,11 @@ pub fn parse(text: &str) -> Result<Setting, String> {
     let end = value
         .find(|c: char| c == '[' || c.is_whitespace())
         .unwrap_or(value.len());
-    let number: f64 = value[..end]
-        .trim()
-        .parse()
-        .map_err(|_| format!("`{text}`: `{}` is not a number", &value[..end]))?;
+    let word = value[..end].trim();
+    let number: f64 = word.parse().map_err(|_| {
+        let instead = instead_of(path.trim(), word);
+        format!("`{text}`: `{word}` is not a number: {instead}")
+    })?;
     if !number.is_finite() {
         return Err(format!("`{text}`: the number must be finite"));
     }
@@ -72,6 +73,26 @@ pub fn parse(text: &str) -> Result<Setting, String> {
     }
     let unit = NamedUnit::parse(unit).map_err(|error| format!("`{text}`: {error}"))?;
     Ok(Setting::of(path, unit.unit().to_si(number), Some(unit)))
+}
+
+/// What to write instead of a word that is not a number.
+fn instead_of(path: &str, word: &str) -> String {
+    if word.starts_with('{') {
+        return format!("an array is set element by element, `{path}[1]=…`");
+    }
+    if let Ok(number) = word.replacen(',', ".", 1).parse::<f64>() {
+        return format!("the decimal sign is a point, `{path}={number}`");
+    }
+    let ends = word.char_indices().rev().map(|(at, _)| word.split_at(at));
+    let mut parted = ends
+        .filter_map(|(number, unit)| Some((number.parse::<f64>().ok()?, unit)))
+        .filter(|(_, unit)| NamedUnit::parse(unit).is_ok());
+    match parted.next() {
+        Some((number, unit)) => {
+            format!("a blank parts it from its unit, `{path}='{number} [{unit}]'`")
+        }
+        None => format!("write one number, and its unit if it has one, `{path}='2.5 [mm]'`"),
+    }
 }
 
 /// The value, SI, of a number whose unit, if it has one, is of this dimension; none of anything else.
@@ -129,10 +150,17 @@ mod tests {
     fn values_take_their_unit_with_or_without_brackets() {
         let setting = parse("saddle.M=320 [kg]").unwrap();
         assert_eq!((setting.path.as_str(), setting.value), ("saddle.M", 320.0));
-        assert_eq!(
-            parse("gap=12um").unwrap_err(),
-            "`gap=12um`: `12um` is not a number"
-        );
+        for (wrong, instead) in [
+            ("gap=12um", "gap='12 [um]'"),
+            ("gap=1e-5m", "gap='0.00001 [m]'"),
+            ("gap=1,5", "gap=1.5"),
+            ("gap=2*3", "gap='2.5 [mm]'"),
+        ] {
+            let refused = parse(wrong).unwrap_err();
+            assert!(refused.ends_with(&format!("`{instead}`")), "{refused}");
+            assert!(parse(&instead.replace('\'', "")).is_ok(), "{instead}");
+        }
+        assert!(parse("m={1,2}").unwrap_err().ends_with("`m[1]=…`"));
         assert_eq!(parse("gap = 12 um").unwrap().value, 12e-6);
         assert_eq!(parse("n=3").unwrap().unit, None);
         let on = parse("on = true").unwrap();

@@ -15,7 +15,7 @@ pub(crate) fn instead_of_type(name: &str) -> Option<&'static str> {
     Some(help)
 }
 
-const FUNCTIONS: [(&[&str], &str); 10] = [
+const FUNCTIONS: [(&[&str], &str); 11] = [
     (&["ln"], "the natural logarithm is `log(x)`"),
     (&["pow", "power"], "a power is written `x^2`"),
     (
@@ -33,15 +33,27 @@ const FUNCTIONS: [(&[&str], &str); 10] = [
         &["interp1", "interp", "lookup"],
         "a curve through points is `table(x, {0, 1, 2}, {0, 1, 4})`",
     ),
+    (
+        &["clock", "Clock", "sampled", "previous"],
+        "what a clock computes is written `clocked control(1 [ms]) … end control;`, the value at the last tick `pre(x)`",
+    ),
     (&["arcsin"], "the function is called `asin`"),
     (&["arccos"], "the function is called `acos`"),
 ];
 
-const TYPES: [(&[&str], &str); 3] = [
+const TYPES: [(&[&str], &str); 5] = [
     (
         &["double", "float", "number", "real"],
         "write `Real`, or the quantity that it is: `Length`",
     ),
     (&["int", "integer"], "write `Integer`"),
     (&["bool", "boolean"], "write `Boolean`"),
+    (
+        &["wrap"],
+        "an effect changes what a variable is by `wrap F by F + dF;`",
+    ),
+    (
+        &["replace"],
+        "an effect puts another part in the place of one by `replace link by SoftLink;`",
+    ),
 ];

@@ -116,8 +116,11 @@ pub(crate) fn skip_statement(text: &str, start: usize) -> usize {
             ";" if depth == 0 && blocks == 0 => return at + 1,
             "end" if at > start && depth == 0 && previous != "." => {
                 let next = Scanner::new(text, at + token.len()).next();
-                let of_block = next.is_some_and(|(_, next)| BLOCKS.contains(&next));
-                if blocks == 0 || !of_block {
+                let next = next.map_or("", |(_, next)| next);
+                // `end = …` is somebody's name for something.
+                let ends = matches!(next, "" | ";")
+                    || next.starts_with(|c: char| c.is_alphabetic() || c == '_');
+                if ends && (blocks == 0 || !BLOCKS.contains(&next)) {
                     return at;
                 }
             }

@@ -39,6 +39,10 @@ diagnostics! {
         at here, "`{force}` is free in this mode and does not act on `{state}`";
         help "let the block determine the force in its other modes, and connect it to the body it holds";
     }
+    fn idle_start(start: &str, variable: &str, here: Span) = warning BadSet {
+        "`{start}` has no effect"; at here, "`{variable}` follows from other variables at every time";
+        help "set the start of a state from which it follows";
+    }
     fn prescribed((automaton, here): (&str, Span), mode: &str, part: Option<Part>) = warning BadPin {
         "the mode `{mode}` of `{automaton}` cannot hold a motion that is prescribed";
         if let Some((part, here)) = part { at here, "`{part}` acts on a prescribed motion"; }

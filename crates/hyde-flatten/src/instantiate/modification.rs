@@ -64,7 +64,8 @@ fn modifiers_below<'a>(
         let mut parts = change.target.parts.iter();
         if parts.any(|part| !part.subscripts.is_empty()) {
             let inner = change.changes.first().map(|inner| &inner.target);
-            model.report(refused::modifies_one_element(&change.target, inner));
+            let chosen = change.redeclare.as_ref();
+            model.report(refused::modifies_one_element(&change.target, inner, chosen));
             continue;
         }
         let mut target = above.to_vec();

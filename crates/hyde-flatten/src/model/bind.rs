@@ -265,8 +265,8 @@ impl<'a> Model<'a, '_> {
             return;
         }
         self.flat.variables[var].start = self.values(&start, len, &dim, truth);
-        self.fix_elements(var, start.span);
         self.free_start(var, start.span);
+        self.fix_elements(var, start.span);
     }
 
     /// Where some elements are fixed and others are not, each that is has an initial equation.
@@ -289,16 +289,56 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// A start value that is set from outside, as `NAME.start`, is a parameter of that name.
+    /// A start value that is set from outside, as `NAME.start` or `NAME[2].start`, is a parameter of that name.
     fn free_start(&mut self, var: VarId, span: Span) {
         let variable = &self.flat.variables[var];
-        let name = format!("{}.start", variable.name);
-        if variable.len.is_some() || variable.boolean || !self.input.settings.contains_key(&name) {
+        if variable.boolean {
             return;
+        }
+        let Some(len) = variable.len else {
+            let name = format!("{}.start", variable.name);
+            let given = variable.start.first().copied();
+            if let Some(free) = self.start_parameter(var, name, given, span) {
+                self.flat.variables[var].start = vec![free];
+            }
+            return;
+        };
+        let first = format!("{}[", variable.name);
+        let mut set = self.input.settings.range(first.clone()..);
+        if !set.next().is_some_and(|(name, _)| name.starts_with(&first)) {
+            return;
+        }
+        let starts = variable.start.clone();
+        let nothing = self.flat.exprs.constant(0.0);
+        let elements = (0_i32..).zip(0..len);
+        let each = elements.map(|(counter, element)| match starts.as_slice() {
+            [] => nothing,
+            [all] => self.flat.exprs.at_counter(*all, counter),
+            each => each.get(element).copied().unwrap_or(nothing),
+        });
+        let mut each: Vec<ExprId> = each.collect();
+        for (element, start) in each.iter_mut().enumerate() {
+            let name = format!("{}.start", self.flat.variables[var].element_name(element));
+            if let Some(free) = self.start_parameter(var, name, Some(*start), span) {
+                *start = free;
+            }
+        }
+        self.flat.variables[var].start = each;
+    }
+
+    /// The parameter for a start value of a name, if that is set from outside; `given` is what the model says.
+    fn start_parameter(
+        &mut self,
+        var: VarId,
+        name: String,
+        given: Option<ExprId>,
+        span: Span,
+    ) -> Option<ExprId> {
+        if !self.input.settings.contains_key(&name) {
+            return None;
         }
         let notes = self.notes(var);
         let (instance, dim) = (notes.instance, notes.dim.clone());
-        let quantity = variable.quantity.clone();
         let kind = if notes.integer {
             Kind::Integer
         } else {
@@ -308,18 +348,15 @@ impl<'a> Model<'a, '_> {
             kind,
             ..Allowed::default()
         };
-        let value = match variable.start.first() {
-            Some(&value) => value,
-            None => self.flat.exprs.constant(0.0),
-        };
+        let quantity = self.flat.variables[var].quantity.clone();
+        let value = given.unwrap_or_else(|| self.flat.exprs.constant(0.0));
         self.parameters.push(ParameterNotes::made(dim));
         let origin = self.tree.origin(instance, span);
         let param = self.flat.parameters.push(Parameter {
             allowed,
             ..Parameter::new(name, value, quantity, origin)
         });
-        let start = self.flat.exprs.add(Ir::Param(param, Index::SCALAR));
-        self.flat.variables[var].start = vec![start];
+        Some(self.flat.exprs.add(Ir::Param(param, Index::SCALAR)))
     }
 
     /// `Real x = e` as an equation of x.

@@ -95,6 +95,10 @@ diagnostics! {
         "`hold` inside a clocked part"; at here, "nothing to hold here";
         help "read the variable of the other clocked part directly";
     }
+    fn hold_of_continuous(name: &Reference) = error ClockBorder {
+        "`{}` is continuous, and nothing holds it", name.dotted(); at name.span, "no variable of a clocked part";
+        help "read it as it is, `{}`; what a part computes is held by its name, `hold(control.u)`", name.dotted();
+    }
     fn hold_of_several(count: usize, here: Span) = error ClockBorder {
         "`hold` takes a value of one clocked part"; at here, "belongs to {count}";
         help "hold each value separately";

@@ -25,6 +25,16 @@ diagnostics! {
         "`when` inside a clocked part"; at here, "everything here happens at the tick";
         help "write `x = if … then … else pre(x);`";
     }
+    /// `part` is the clocked part that computes the variable.
+    fn computed_in_clocked(name: &Reference, part: &str) = error ClockBorder {
+        "`{}` is not a variable of the clocked part `{part}`", name.dotted(); at name.span, "declared outside of it";
+        match (name.as_word()) {
+            Some(word) => { help "move its declaration into `clocked {part}(…)`; continuous equations read it as `hold({part}.{word})`"; }
+            None => {
+                help "compute it in a variable that is declared in `clocked {part}(…)`, `Real u = …;`, and write `{} = hold({part}.u);` under `equation`", name.dotted();
+            }
+        }
+    }
     fn not_an_action(equation: Span) = error Misplaced {
         "an event sets variables one by one"; at equation, "neither `reinit(x, e)` nor `d = e`";
     }

@@ -88,14 +88,19 @@ diagnostics! {
     fn nothing_to_modify(name: &str, here: Span) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "changes nothing";
     }
-    /// `inner` is what is changed inside the element, if that is in parentheses.
-    fn modifies_one_element(target: &Reference, inner: Option<&Reference>) = error UnknownModification {
+    /// `inner` is what is changed inside the element, if that is in parentheses; `chosen` is the model it is given.
+    fn modifies_one_element(
+        target: &Reference, inner: Option<&Reference>, chosen: Option<&Reference>,
+    ) = error UnknownModification {
         "a modification cannot change one element of an array"; at target.span, "one element";
-        match inner {
-            Some(inner) => {
+        match (chosen, inner) {
+            (Some(chosen), _) => {
+                help "choose a model for all elements, `redeclare {} {}`, or declare the components one by one", chosen.dotted(), target.dotted();
+            }
+            (None, Some(inner)) => {
                 help "give each element its value: `{}({} = {{…, …}})`; `--set` and `vary` set one element", target.dotted(), inner.dotted();
             }
-            None => {
+            (None, None) => {
                 help "give each element its value: `{} = {{…, …}}`; `--set` and `vary` set one element", target.dotted();
             }
         }

@@ -9,7 +9,7 @@ use crate::turns::Turns;
 use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
 use hyde_ir::{ClockId, Expr as Ir, ExprId, FlatModel, Index, Range, VarId, VariableKind};
-use hyde_syntax::ast::{Expr, ExprKind};
+use hyde_syntax::ast::{Expr, ExprKind, Reference};
 use hyde_units::Dimension;
 
 impl<'a> Model<'a, '_> {
@@ -36,7 +36,7 @@ impl<'a> Model<'a, '_> {
             (VariableKind::Continuous, Setting::Action) => true,
             _ => false,
         };
-        if !allowed {
+        if !allowed && !self.misplaced.contains(&var) {
             self.report(refused::pre_without_meaning(reference, span));
         }
         let id = self.flat.exprs.add(Ir::Pre(var, index));
@@ -82,6 +82,12 @@ impl<'a> Model<'a, '_> {
             self.needs_unrolling = true;
             return self.poison(span);
         }
+        if let Some((name, var)) = self.continuous(a, scope) {
+            if !self.misplaced.contains(&var) {
+                self.report(refused::hold_of_continuous(name));
+            }
+            return self.poison(span);
+        }
         let inner = self.value(a, &scope.with(Setting::Clocked));
         let clocks = clocks_of(&self.flat, inner.id);
         let [clock] = clocks.as_slice() else {
@@ -120,6 +126,18 @@ impl<'a> Model<'a, '_> {
         };
         let id = self.flat.exprs.var(held);
         self.typed(id, inner.dim, span)
+    }
+
+    /// A continuous variable, and its name, if an expression is nothing but that.
+    fn continuous(&mut self, a: &'a Expr, scope: &Scope<'a>) -> Option<(&'a Reference, VarId)> {
+        let ExprKind::Reference(name) = &a.kind else {
+            return None;
+        };
+        let inner = self.lower(a, &scope.with(Setting::Report));
+        let Ir::Var(var, _) = self.flat.exprs[inner.id] else {
+            return None;
+        };
+        (self.flat.variables[var].kind == VariableKind::Continuous).then_some((name, var))
     }
 
     /// A clocked variable for an expression that is held.

@@ -89,12 +89,12 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) -> Typed {
         if scope.setting == Setting::Parameter {
-            let name = self.flat.variables[var].name.clone();
+            let name = self.name_of(var, index);
             self.not_constant(&format!("`{name}`"), span);
             return self.poison(span);
         }
         if scope.setting == Setting::Measure {
-            let name = self.flat.variables[var].name.clone();
+            let name = self.name_of(var, index);
             self.report(refused::signal_for_number(&name, span));
             return self.poison(span);
         }
@@ -105,7 +105,7 @@ impl<'a> Model<'a, '_> {
         let Some(index) = self.whole(index, len, scope, span) else {
             return self.poison(span);
         };
-        self.check_border(var, scope, span);
+        self.check_border((var, index), scope, span);
         let id = self.flat.exprs.add(Ir::Var(var, index));
         let truth = self.flat.variables[var].boolean;
         Typed {
@@ -115,8 +115,22 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    fn check_border(&mut self, var: VarId, scope: &Scope<'a>, span: Span) {
-        let name = self.flat.variables[var].name.clone();
+    /// The name of a variable, or of the element of it that is meant.
+    fn name_of(&self, var: VarId, index: Option<Index>) -> String {
+        let variable = &self.flat.variables[var];
+        let element = index.filter(|index| index.stride == 0);
+        let element = element.and_then(|index| usize::try_from(index.offset).ok());
+        match element {
+            Some(element) => variable.element_name(element),
+            None => variable.name.clone(),
+        }
+    }
+
+    fn check_border(&mut self, (var, index): (VarId, Index), scope: &Scope<'a>, span: Span) {
+        if self.misplaced.contains(&var) {
+            return;
+        }
+        let name = self.name_of(var, Some(index));
         match (self.flat.variables[var].kind, scope.setting) {
             (
                 VariableKind::Clocked(_),
