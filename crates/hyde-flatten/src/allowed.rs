@@ -61,7 +61,14 @@ fn check_value(model: &mut Model<'_, '_>, param: ParamId) {
     if plain || parameter.found || model.input.settings.contains_key(&name) {
         return;
     }
-    for value in parameter.value.clone() {
+    let (elements, values) = ((0_i32..).take(parameter.size()), parameter.value.clone());
+    let each: Vec<ExprId> = match values[..] {
+        [all] => elements
+            .map(|element| model.flat.exprs.at_counter(all, element))
+            .collect(),
+        _ => values,
+    };
+    for value in each {
         let Some(value) = model.current_value(value) else {
             continue;
         };

@@ -46,12 +46,22 @@ impl<'a> Model<'a, '_> {
 
     /// The number that a lowered expression is; one that is not constant is reported.
     pub(crate) fn constant_of(&mut self, typed: &Typed) -> Option<f64> {
+        if self.moves(typed.id) {
+            return None;
+        }
         let errors = self.diagnostics.error_count();
         let value = self.evaluate(typed.id);
-        if value.is_none() && self.diagnostics.error_count() == errors && !self.needs_unrolling {
+        if value.is_none() && self.diagnostics.error_count() == errors {
             self.report(refused::expression_not_constant(typed.span));
         }
         value
+    }
+
+    /// Whether each turn of the loop has a value of its own: the loop is unrolled then.
+    pub(crate) fn moves(&mut self, id: ExprId) -> bool {
+        let moves = self.flat.exprs.any(id, moves_with_counter);
+        self.needs_unrolling |= moves;
+        moves
     }
 
     /// The value of a lowered expression of parameters, which become structural.
@@ -73,8 +83,6 @@ impl<'a> Model<'a, '_> {
             .map(|id| self.flat.exprs[id])
             .collect();
         if leaves.iter().any(|&leaf| moves_with_counter(leaf)) {
-            // Each turn of the loop has a value of its own.
-            self.needs_unrolling = true;
             return None;
         }
         let mut values = Vec::new();

@@ -72,6 +72,9 @@ impl<'a> Model<'a, '_> {
             "a delay is a time, found",
             scope.instance,
         );
+        if self.moves(given.id) {
+            return None;
+        }
         let observed = self.input.form == Form::Observed;
         let value = match observed {
             true => self.current_value(given.id),
@@ -81,9 +84,7 @@ impl<'a> Model<'a, '_> {
             return None;
         }
         let Some(value) = value else {
-            if !self.needs_unrolling {
-                self.not_constant("the time of a delay", by.span);
-            }
+            self.not_constant("the time of a delay", by.span);
             return None;
         };
         if !(value >= 0.0 && value.is_finite()) {
