@@ -46,6 +46,15 @@ fn dimension(dim: &Dim, dimensions: &Dimensions) -> Dimension {
         })
 }
 
+/// Drops the equations of arrays that have no element.
+pub(crate) fn drop_empty_equations(flat: &mut FlatModel) {
+    flat.equations.retain(|equation| !equation.range.is_empty());
+    flat.initial_equations
+        .retain(|equation| !equation.range.is_empty());
+    flat.clocked_equations
+        .retain(|clocked| !clocked.equation.range.is_empty());
+}
+
 /// Orders parameters so that each comes after those its value uses.
 pub(crate) fn order_parameters(flat: &mut FlatModel, diagnostics: &mut Diagnostics) {
     let mut state = vec![Lowering::Waiting; flat.parameters.len()];

@@ -162,6 +162,7 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     // Dimensions are known from here on.
     model.solve_dimensions();
     let (flat, dimensions) = (&mut model.flat, &model.dimensions);
+    finish::drop_empty_equations(flat);
     finish::settle_variables(&mut flat.variables, &model.variables, dimensions);
     let columns = &model.column_variables;
     experiment::report_units_in_names(model.input, flat, columns, model.diagnostics);

@@ -5,6 +5,7 @@ pub(crate) mod call;
 pub(crate) mod field;
 pub(crate) mod lower;
 pub(crate) mod structural;
+pub(crate) mod together;
 
 mod agreement;
 
@@ -13,6 +14,7 @@ use crate::dimension::constraints::Dimensions;
 use crate::input::Input;
 use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
 use crate::instantiate::{InstanceTree, Making, Wrap};
+use crate::model::together::Together;
 use crate::names::Names;
 use crate::refusals::names as refused;
 use crate::turns::{Sides, Turns};
@@ -73,8 +75,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
     /// The functions whose calls are being replaced, the outermost first, and what is known of calls.
     pub(crate) calls: Calls<'a>,
-    /// A subscript met that keeps its `for` equation from being one equation over a range.
-    pub(crate) needs_unrolling: bool,
+    /// Whether what is lowered now stands for many elements at once.
+    pub(crate) together: Together,
     pub(crate) diagnostics: &'d mut Diagnostics,
 }
 
@@ -107,7 +109,7 @@ impl<'a, 'd> Model<'a, 'd> {
             misplaced: BTreeSet::new(),
             current_values: BTreeMap::new(),
             calls: Calls::default(),
-            needs_unrolling: false,
+            together: Together::No,
             diagnostics,
         }
     }

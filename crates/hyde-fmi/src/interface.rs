@@ -345,10 +345,7 @@ fn of_parameter(
     };
     let set = matches!(causality, Causality::Parameter | Causality::Local);
     Variable {
-        name: match parameter.len {
-            1 => parameter.name.clone(),
-            _ => format!("{}[{}]", parameter.name, element + 1),
-        },
+        name: parameter.element_name(element),
         description: parameter.source.clone(),
         causality,
         variability,

@@ -71,11 +71,7 @@ pub(crate) fn mode_name(automaton: &str) -> String {
 
 /// An element of a parameter.
 pub(crate) fn parameter_name(dae: &Dae, param: ParamId, element: usize) -> String {
-    let parameter = &dae.parameters[param];
-    match parameter.len {
-        None => quoted(&parameter.name),
-        Some(_) => quoted(&format!("{}[{}]", parameter.name, element + 1)),
-    }
+    quoted(&dae.parameters[param].element_name(element))
 }
 
 /// A column of a record as an input.

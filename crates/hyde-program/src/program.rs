@@ -78,6 +78,17 @@ pub struct Parameter {
     pub origin: Origin,
 }
 
+impl Parameter {
+    /// The name of an element (counted from 0): `k[3]`, or the plain name of what has only one.
+    #[must_use]
+    pub fn element_name(&self, element: usize) -> String {
+        match self.len {
+            1 => self.name.clone(),
+            _ => format!("{}[{}]", self.name, element + 1),
+        }
+    }
+}
+
 /// A column of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -369,11 +380,7 @@ impl Program {
     pub fn parameter_at(&self, place: usize) -> Option<(&Parameter, String)> {
         let inside = |known: &&Parameter| (known.place..known.place + known.len).contains(&place);
         let parameter = self.parameters.iter().find(inside)?;
-        let name = match parameter.len {
-            1 => parameter.name.clone(),
-            _ => format!("{}[{}]", parameter.name, place - parameter.place + 1),
-        };
-        Some((parameter, name))
+        Some((parameter, parameter.element_name(place - parameter.place)))
     }
 
     /// The output of that name.

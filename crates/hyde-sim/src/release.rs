@@ -250,12 +250,6 @@ pub(crate) fn by_parameter(
 }
 
 fn parameter_name(state: &State<'_>, place: usize) -> String {
-    let parameters = &state.program.parameters;
-    let inside = parameters
-        .iter()
-        .find(|p| (p.place..p.place + p.len).contains(&place));
-    inside.map_or_else(String::new, |p| match p.len {
-        1 => p.name.clone(),
-        _ => format!("{}[{}]", p.name, place - p.place + 1),
-    })
+    let found = state.program.parameter_at(place);
+    found.map_or_else(String::new, |(_, name)| name)
 }

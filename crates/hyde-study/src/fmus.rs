@@ -10,7 +10,7 @@ use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_fmu_import::{Fmu, InProcess};
 use hyde_program::{Foreign, Program};
 use hyde_sim::{Failure, FailureKind};
-use hyde_syntax::ast::{Change, ClassBody, Item, Name, Part, Reference};
+use hyde_syntax::ast::{Change, ClassBody, Item, Reference};
 use sha2::{Digest, Sha256};
 use std::fmt::Debug;
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ pub(crate) fn read(
                     for diagnostic in mistaken(&fmu, changes, *span) {
                         diagnostics.push(diagnostic);
                     }
-                    *base = dotted(&package, model, *span);
+                    *base = Reference::of_path(&format!("{package}.{model}"), *span);
                     let fmu = Arc::new(fmu);
                     let computed_by: Arc<dyn Foreign> = match &asked.fmu_host {
                         Some(host) => host.host(&fmu),
@@ -142,20 +142,6 @@ fn mistaken(fmu: &Fmu, changes: &[Change], span: Span) -> Vec<Diagnostic> {
         found.push(refused::no_step(file, span));
     }
     found
-}
-
-fn dotted(package: &str, model: &str, span: Span) -> Reference {
-    let part = |text: &str| Part {
-        name: Name {
-            text: text.to_owned(),
-            span,
-        },
-        subscripts: Vec::new(),
-    };
-    Reference {
-        parts: vec![part(package), part(model)],
-        span,
-    }
 }
 
 fn of_file(

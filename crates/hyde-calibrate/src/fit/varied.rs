@@ -61,12 +61,8 @@ impl Varied {
                     Prior::Relative(part) => (part * nominal).abs() / 3.0_f64.sqrt(),
                     Prior::Absolute(width) => width.abs() / 3.0_f64.sqrt(),
                 });
-                let name = match parameter.len {
-                    1 => parameter.name.clone(),
-                    _ => format!("{}[{}]", parameter.name, element + 1),
-                };
                 Self {
-                    name,
+                    name: parameter.element_name(element),
                     place: parameter.place + element,
                     nominal,
                     prior: prior.filter(|sd| *sd > 0.0),

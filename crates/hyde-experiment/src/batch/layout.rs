@@ -70,10 +70,7 @@ impl<'m> Layout<'m> {
                         continue;
                     }
                     for element in 0..parameter.len {
-                        let name = match parameter.len {
-                            1 => parameter.name.clone(),
-                            _ => format!("{}[{}]", parameter.name, element + 1),
-                        };
+                        let name = parameter.element_name(element);
                         if self.inputs.iter().any(|input| input.name == name) {
                             continue;
                         }

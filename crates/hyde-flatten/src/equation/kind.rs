@@ -82,10 +82,8 @@ fn equality<'a>(
 ) -> Vec<Equation> {
     let len = model.array_length(lhs, scope);
     let Some(len) = len.or_else(|| model.array_length(rhs, scope)) else {
-        let equation = one_equality(model, (lhs, rhs), Range::SCALAR, scope, span);
-        return equation.into_iter().collect();
+        return vec![one_equality(model, (lhs, rhs), Range::SCALAR, scope, span)];
     };
-    let in_loop = model.needs_unrolling;
     let range = Range {
         first: 0,
         last: i32::try_from(len).unwrap_or(i32::MAX) - 1,
@@ -94,19 +92,19 @@ fn equality<'a>(
     let counts = |(_, counter): &(_, Counter)| matches!(counter, Counter::Symbolic);
     if scope.counters.iter().any(counts) {
         // One counter an equation: the loop around it is unrolled.
-        model.needs_unrolling = true;
+        model.unroll();
         return Vec::new();
     }
-    let whole = one_equality(model, (lhs, rhs), range, &counted, span);
-    if !std::mem::replace(&mut model.needs_unrolling, in_loop) {
-        return whole.into_iter().collect();
+    let whole = |model: &mut Model<'a, '_>| one_equality(model, (lhs, rhs), range, &counted, span);
+    if let Some(whole) = model.together(whole) {
+        return vec![whole];
     }
     if !can_unroll(model.diagnostics, len, span) {
         return Vec::new();
     }
     let one = |at| scope.elements(Elementwise::One(Position { at, of: len }));
     (0..len)
-        .filter_map(|at| one_equality(model, (lhs, rhs), Range::SCALAR, &one(at), span))
+        .map(|at| one_equality(model, (lhs, rhs), Range::SCALAR, &one(at), span))
         .collect()
 }
 
@@ -116,7 +114,7 @@ fn one_equality<'a>(
     range: Range,
     scope: &Scope<'a>,
     span: Span,
-) -> Option<Equation> {
+) -> Equation {
     let (left, right) = (model.lower(lhs, scope), model.lower(rhs, scope));
     model.same_kind(&left, &right);
     if matches!(lhs.kind, ExprKind::Reference(_)) {
@@ -125,10 +123,10 @@ fn one_equality<'a>(
     }
     model.agree(&left, &right, "`=` equates", scope.instance);
     let origin = model.tree.origin(scope.instance, span);
-    (!model.needs_unrolling).then_some(Equation {
+    Equation {
         range,
         lhs: left.id,
         rhs: right.id,
         origin,
-    })
+    }
 }

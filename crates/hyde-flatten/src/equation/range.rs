@@ -48,11 +48,11 @@ pub(super) fn for_equation<'a>(
     if plain && outermost && range.len() > 1 && scope.elementwise.is_none() {
         let mut inner = scope.clone();
         inner.counters.push((name, Counter::Symbolic));
-        let list: Vec<Equation> = body
-            .iter()
-            .flat_map(|equation| lower_equation(model, equation, &inner))
-            .collect();
-        if !std::mem::take(&mut model.needs_unrolling) {
+        let list = model.together(|model| {
+            let each = |equation| lower_equation(model, equation, &inner);
+            body.iter().flat_map(each).collect::<Vec<Equation>>()
+        });
+        if let Some(list) = list {
             return list
                 .into_iter()
                 .filter_map(|equation| {

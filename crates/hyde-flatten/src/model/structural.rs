@@ -46,7 +46,7 @@ impl<'a> Model<'a, '_> {
 
     /// The number that a lowered expression is; one that is not constant is reported.
     pub(crate) fn constant_of(&mut self, typed: &Typed) -> Option<f64> {
-        if self.moves(typed.id) {
+        if self.differs_along(typed.id) {
             return None;
         }
         let errors = self.diagnostics.error_count();
@@ -57,11 +57,9 @@ impl<'a> Model<'a, '_> {
         value
     }
 
-    /// Whether each turn of the loop has a value of its own: the loop is unrolled then.
-    pub(crate) fn moves(&mut self, id: ExprId) -> bool {
-        let moves = self.flat.exprs.any(id, moves_with_counter);
-        self.needs_unrolling |= moves;
-        moves
+    /// Whether each of the elements that are lowered together has a value of its own: they are unrolled then.
+    pub(crate) fn differs_along(&mut self, id: ExprId) -> bool {
+        self.flat.exprs.any(id, moves_with_counter) && self.unroll()
     }
 
     /// The value of a lowered expression of parameters, which become structural.
@@ -137,9 +135,9 @@ impl<'a> Model<'a, '_> {
             }
             return Some(value);
         }
-        let values = &self.flat.parameters[param].value;
-        let value = match (values.as_slice(), i32::try_from(element)) {
-            ([all], Ok(counter)) => {
+        let parameter = &self.flat.parameters[param];
+        let value = match (parameter.value.as_slice(), i32::try_from(element)) {
+            ([all], Ok(counter)) if parameter.len.is_some() => {
                 let all = *all;
                 self.flat.exprs.at_counter(all, counter)
             }

@@ -54,10 +54,9 @@ impl<'a> Model<'a, '_> {
             });
             return Elements::Each(items.collect());
         }
-        let before = std::mem::take(&mut self.needs_unrolling);
-        let value = self.lower(expr, &scope.elements(Elementwise::Range(len)));
-        if !std::mem::replace(&mut self.needs_unrolling, before) {
-            return Elements::All(value);
+        let counted = scope.elements(Elementwise::Range(len));
+        if let Some(all) = self.together(|model| model.lower(expr, &counted)) {
+            return Elements::All(all);
         }
         let one = |at| scope.elements(Elementwise::One(Position { at, of: len }));
         Elements::Each((0..len).map(|at| self.lower(expr, &one(at))).collect())

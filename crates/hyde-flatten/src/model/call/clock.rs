@@ -79,7 +79,7 @@ impl<'a> Model<'a, '_> {
         }
         if matches!(scope.elementwise, Some(Elementwise::Range(_))) {
             // Each element is held apart.
-            self.needs_unrolling = true;
+            self.unroll();
             return self.poison(span);
         }
         if let Some((name, var)) = self.continuous(a, scope) {
@@ -97,7 +97,7 @@ impl<'a> Model<'a, '_> {
         let clock = *clock;
         if self.flat.exprs.any(inner.id, moves_with_counter) {
             // Each turn of the loop holds another value.
-            self.needs_unrolling = true;
+            self.unroll();
             return self.poison(span);
         }
         let source = if let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner.id]

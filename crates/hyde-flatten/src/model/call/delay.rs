@@ -72,7 +72,7 @@ impl<'a> Model<'a, '_> {
             "a delay is a time, found",
             scope.instance,
         );
-        if self.moves(given.id) {
+        if self.differs_along(given.id) {
             return None;
         }
         let observed = self.input.form == Form::Observed;

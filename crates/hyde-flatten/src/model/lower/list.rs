@@ -17,7 +17,7 @@ impl<'a> Model<'a, '_> {
         match scope.elementwise {
             // Elements of a list have no common form: the equation is unrolled.
             Some(Elementwise::Range(_)) => {
-                self.needs_unrolling = true;
+                self.unroll();
                 self.poison(list.span)
             }
             Some(Elementwise::One(position)) => {

@@ -175,7 +175,7 @@ impl<'a> Model<'a, '_> {
             return None;
         };
         if mentions_counter(subscript, scope) {
-            self.needs_unrolling = true;
+            self.unroll();
             return None;
         }
         let number = self.structural_integer_in(scope, subscript)?;
@@ -199,7 +199,7 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) -> Option<InstanceId> {
         let Elementwise::One(position) = elements else {
-            self.needs_unrolling = true;
+            self.unroll();
             return None;
         };
         let (start, count) = match slice {

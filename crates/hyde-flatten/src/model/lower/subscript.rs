@@ -43,7 +43,7 @@ impl<'a> Model<'a, '_> {
                         offset: b.offset * a.offset,
                     }),
                     _ => {
-                        self.needs_unrolling = true;
+                        self.unroll();
                         None
                     }
                 }
@@ -58,7 +58,7 @@ impl<'a> Model<'a, '_> {
             | ExprKind::Array(..)
             | ExprKind::Comprehension(_)
             | ExprKind::Slice(..) => {
-                self.needs_unrolling = true;
+                self.unroll();
                 None
             }
         }
