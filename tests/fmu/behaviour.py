@@ -1,7 +1,7 @@
 """What an importer may rely on, tried with FMPy: each function is one behaviour. Usage: behaviour.py FOLDER
 
 FOLDER has the FMUs of tests/models/fmu.hyde: lag3.fmu, lag2.fmu (u is an input), crushed3.fmu, crushed2.fmu, ball3.fmu,
-moved3.fmu, moved2.fmu.
+moved3.fmu, moved2.fmu; and of tests/models/exported.hyde: bounded3.fmu, bounded2.fmu.
 """
 
 import math
@@ -123,6 +123,23 @@ def parameters_are_set_and_wrong_ones_refused(name):
     close(get(fmu, lag.vr["T"])[0], 0.05, 0.0)
     fmu.freeInstance()
     lag.remove()
+
+
+def bounds_of_parameters_that_follow_are_kept(name):
+    """F = 2*Fc must not be negative: Fc = -1 N is refused where it is used."""
+    bounded = Fmu(name)
+    for steps in (False, True):
+        fmu = bounded.instance()
+        if steps:
+            begin(fmu)
+            fmu.doStep(0.0, 0.1)
+        put(fmu, bounded.vr["Fc"], -1.0)
+        try:
+            fmu.doStep(0.1, 0.1) if steps else begin(fmu)
+        except Exception:
+            continue
+        raise AssertionError("F may be -2 N")
+    bounded.remove()
 
 
 def an_error_leaves_a_usable_instance(name):
@@ -406,6 +423,7 @@ for fmi in ["3", "2"]:
     a_saved_state_is_returned_to(f"lag{fmi}")
     directional_derivatives_are_those_of_the_equations(f"lag{fmi}")
     the_wrong_token_makes_no_instance(f"lag{fmi}")
+    bounds_of_parameters_that_follow_are_kept(f"bounded{fmi}")
     no_step_goes_beyond_the_stop_time(f"lag{fmi}")
 an_importer_looks_on_within_a_step("lag3")
 guards_are_continuous_functions("ball3")

@@ -7,7 +7,7 @@ mod pieces;
 use self::pieces::PIECES;
 use crate::numbers::Numbers;
 use crate::root;
-use hyde_editor::{Nobody, serve};
+use hyde_editor::{Ended, Nobody, serve};
 use hyde_study::world::{Disk, read_text};
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
@@ -186,7 +186,7 @@ fn uri() -> String {
 /// An editor with a server of its own.
 struct Editor {
     connection: Connection,
-    server: JoinHandle<Result<(), String>>,
+    server: JoinHandle<Result<Ended, String>>,
     last: i32,
 }
 
@@ -263,6 +263,10 @@ impl Editor {
         self.ask("shutdown", Value::Null)?;
         self.tell("exit", Value::Null)?;
         let ended = self.server.join();
-        ended.map_err(|_| "the server ended in a panic".to_owned())?
+        let ended = ended.map_err(|_| "the server ended in a panic".to_owned())??;
+        match ended {
+            Ended::ShutDown => Ok(()),
+            Ended::Exit | Ended::Gone => Err(format!("the server ended otherwise: {ended:?}")),
+        }
     }
 }

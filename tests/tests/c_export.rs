@@ -373,6 +373,26 @@ fn a_lag_and_a_ball_follow_their_closed_forms() {
 }
 
 #[test]
+fn what_an_initial_equation_finds_is_in_the_code() {
+    let built = Built::new("tests/models/exported.hyde", "let_go", "1e-4", "s,v");
+    let rows = built.run(10_000, &[]).unwrap();
+    let (first, last) = (&rows[0], &rows[10_000]);
+    // k = m*g/(s + 0.01 s*v) = 961.76 N/m; the end is that of `hyde run`.
+    assert!((first[0] - 0.05).abs() < 1e-12 && (first[1] - 0.1).abs() < 1e-12);
+    assert!((last[0] - 0.053_499).abs() < 1e-4, "{}", last[0]);
+}
+
+#[test]
+fn values_outside_their_bounds_are_not_taken() {
+    let built = Built::new("tests/models/exported.hyde", "pushed", "1e-3", "v");
+    let refused = built.run_changed(20, &[], &[(10, "p", "Fc", -1.0)]);
+    let reason = refused.unwrap_err();
+    assert!(reason.contains("outside the bounds"), "{reason}");
+    let refused = built.run_changed(20, &[], &[(10, "p", "Fc", f64::NAN)]);
+    assert!(refused.is_err(), "{refused:?}");
+}
+
+#[test]
 fn a_failed_assert_leaves_the_model_as_it_was() {
     let built = Built::new(MODELS, "crushed", "1e-2", "x");
     let said = built.run(60, &[]).unwrap_err();

@@ -15,6 +15,7 @@ use std::process::{Command, Output};
 
 const LINEAR: &str = "tests/models/state_space.hyde";
 const FMU: &str = "tests/models/fmu.hyde";
+const EXPORTED: &str = "tests/models/exported.hyde";
 
 fn hyde(arguments: &[&str]) -> Output {
     let mut command = Command::new(Path::new(env!("CARGO_BIN_EXE_hyde-tested")));
@@ -118,6 +119,11 @@ fn classes_of_modelica_run_in_rumoca() {
         (FMU, "stepped", "Lag_stepped", "x,count:1e-4"),
         (FMU, "bouncing", "Ball_bouncing", "h:1e-3"),
         (FMU, "moved", "Sampled_moved", "mass.s,mass.v:1e-3"),
+        // What an initial equation finds, a guide that slips at the start, a branch before another one, a common tick.
+        (EXPORTED, "let_go", "Hung_let_go", "s,v:1e-3"),
+        (EXPORTED, "coast", "Coasting_coast", "m.s,m.v:1e-3"),
+        (EXPORTED, "branches", "Either_branches", "x,n:1e-3"),
+        (EXPORTED, "ticks", "Common_ticks", "x,b.seen:1e-3"),
         (
             "examples/first/first.hyde",
             "push",

@@ -98,15 +98,16 @@ fn importers_set_read_fail_and_begin_again() {
     };
     let folder = tempfile::tempdir().unwrap();
     for fmi in ["3", "2"] {
-        for (name, model) in [
-            ("lag", ["--model", "Lag"].as_slice()),
-            ("crushed", &["crushed"]),
-            ("ball", &["bouncing"]),
-            ("moved", &["moved"]),
+        for (name, file, model) in [
+            ("lag", MODELS, ["--model", "Lag"].as_slice()),
+            ("crushed", MODELS, &["crushed"]),
+            ("ball", MODELS, &["bouncing"]),
+            ("moved", MODELS, &["moved"]),
+            ("bounded", "tests/models/exported.hyde", &["pushed"]),
         ] {
             let out = folder.path().join(format!("{name}{fmi}.fmu"));
             let out = out.to_string_lossy().into_owned();
-            let mut arguments = vec![MODELS];
+            let mut arguments = vec![file];
             arguments.extend(model);
             arguments.extend(["--fmi", fmi, "--out", &out]);
             let output = export(&arguments);

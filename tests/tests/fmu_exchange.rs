@@ -96,6 +96,54 @@ fn events_of_an_fmu_for_model_exchange_are_located() {
     }
 }
 
+/// A block that stops at 0.586 s, sticks while the force grows, and starts anew at 2 s.
+const BLOCK: &str = "import SI.*;
+model Block
+  Velocity v(start = 1 [m/s], fixed = true);
+  Force f = 1.5 [N/s]*time;
+  Force friction = 3 [N]*sign(v);
+equation
+  2 [kg]*der(v) = f - friction;
+end Block;
+experiment e of Block
+  solve auto(rtol = 1e-8) stop 3 [s];
+end e;
+";
+
+#[test]
+fn a_switch_that_slides_ends_at_a_step_of_an_importer_that_integrates() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let place = |name: &str| folder.join(name);
+    write(folder, "block.hyde", BLOCK);
+    for fmi in ["3", "2"] {
+        let mut command = Command::new(HYDE);
+        command.args(["export", "fmu", "--quiet", "--fmi", fmi]);
+        command.arg(place("block.hyde")).arg("--out");
+        succeed(command.arg(place("both.fmu"))).unwrap();
+        if made(&[&place("both.fmu"), &place("block.fmu")], "exchange").is_none() {
+            return;
+        }
+        write(
+            folder,
+            "imported.hyde",
+            "import SI.*;\nmodel Block = fmu(\"block.fmu\", step = 10 [ms]);\nmodel Pushed\n  Block block;\nend Pushed;\n\
+             experiment pushed of Pushed\n  solve auto stop 3 [s] every 10 [ms];\nend pushed;\n",
+        );
+        let results = columns(folder, &["run", "imported.hyde"]);
+        let v = column(&results, "block.v");
+        let t = column(&results, "t");
+        let at = |wanted: f64| {
+            let row = t.iter().position(|t| (t - wanted).abs() < 1e-9).unwrap();
+            v[row]
+        };
+        assert!(at(1.5).abs() < 1e-9, "it sticks: {}", at(1.5));
+        // 2 kg dv/dt = 1.5 N/s (t - 2 s).
+        let end = v.last().unwrap();
+        assert!((end - 0.375).abs() < 1e-3, "it starts anew: {end}");
+    }
+}
+
 #[test]
 fn arrays_have_the_size_of_their_structural_parameter_and_prints_stay_apart() {
     let folder = tempfile::tempdir().unwrap();

@@ -15,7 +15,7 @@ use crate::system::System;
 use crate::unroll;
 use hyde_diag::Diagnostics;
 use hyde_ir::{BinaryOp, Expr, ExprId, UnaryOp};
-pub(crate) use mismatch::{missing_boundary, name, unbound_input};
+pub(crate) use mismatch::{equation_for, missing_boundary, name, unbound_input};
 use mismatch::{report, undetermined};
 pub(crate) use node::{Node, origin, sides};
 use rustc_hash::FxHashMap;

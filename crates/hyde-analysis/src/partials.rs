@@ -25,10 +25,18 @@ pub(crate) fn differentiate(dae: &mut Dae) {
     };
     for function in Function::ALL {
         let mut list = Vec::new();
+        if function == Function::Angles {
+            dae.partials.push((function, list));
+            continue;
+        }
         let rows = expanded_rows(dae, function, &definitions);
         if function == Function::Residual {
             let values: Vec<ExprId> = rows.iter().map(|(_, _, value)| *value).collect();
             turning::find(dae, &values);
+        }
+        if function == Function::Roots {
+            let values: Vec<ExprId> = rows.iter().map(|(_, _, value)| *value).collect();
+            turning::find_angles(dae, &values);
         }
         for (range, row, value) in rows {
             let gradient = dae.exprs.gradient(value, is_leaf);
@@ -110,6 +118,12 @@ pub fn rows(dae: &Dae, function: Function) -> Vec<(Range, Index, ExprId)> {
             }
             found
         }
+        Function::Angles => dae
+            .angles
+            .iter()
+            .enumerate()
+            .map(|(row, &value)| scalar(row, value))
+            .collect(),
         Function::Delayed => dae
             .delays
             .enumerate()

@@ -33,6 +33,19 @@ pub(crate) fn find(dae: &mut Dae, rows: &[ExprId]) {
     dae.timed = is_timed(dae);
 }
 
+/// The arguments of the sines and cosines in root functions: a root function may come to zero and back between two points of a step
+/// as often as they turn between these.
+pub(crate) fn find_angles(dae: &mut Dae, roots: &[ExprId]) {
+    for id in dae.exprs.below(roots) {
+        if let Expr::Unary(UnaryOp::Sin | UnaryOp::Cos, argument) = dae.exprs[id]
+            && !dae.exprs.is_parametric(argument)
+            && !dae.angles.contains(&argument)
+        {
+            dae.angles.push(argument);
+        }
+    }
+}
+
 /// Whether the time, a record column or a delayed value stands in the residual or in what is explicit.
 fn is_timed(dae: &Dae) -> bool {
     let residuals = dae.residuals.iter().map(|own| own.value);

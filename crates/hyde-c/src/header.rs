@@ -50,6 +50,10 @@ pub(crate) fn text(
         ("NOT_FINITE", "an equation has no finite value"),
         ("ASSERT", "an assert of the model does not hold"),
         ("NO_SUCH", "no such input or parameter"),
+        (
+            "NOT_ALLOWED",
+            "a value is not finite, or outside the bounds of its parameter or of one that follows from it",
+        ),
     ] {
         let _ = writeln!(text, "    {name}_{status}, /* {what} */");
     }

@@ -331,6 +331,13 @@ static int hy_instant(@NAME@ *m, int at_start)
     return status;
 }
 
+/* Whether a parameter or an input may have a value. */
+static int hy_allowed(int place, double value)
+{
+    return fabs(value) < HUGE_VAL && value >= hy_low[place] && value <= hy_high[place] &&
+           (!hy_whole[place] || value == floor(value));
+}
+
 int @NAME@_init(@NAME@ *m)
 {
     memset(m, 0, sizeof *m);
@@ -352,6 +359,11 @@ int @NAME@_step(@NAME@ *m)
     int status;
     if (m->set) {
         hy_parameters(m->given, m->p);
+        for (int k = 0; k < HY_PARAMETERS; ++k) {
+            if (m->p[k] < hy_low[k] || m->p[k] > hy_high[k]) {
+                return @NAME@_NOT_ALLOWED;
+            }
+        }
         m->set = m->quiet = 0;
     }
     memcpy(m->before_y, m->y, sizeof m->y);
@@ -400,6 +412,9 @@ int @NAME@_set(@NAME@ *m, int input, double value)
     if (input < 0 || input >= @NAME@_INPUTS) {
         return @NAME@_NO_SUCH;
     }
+    if (!(fabs(value) < HUGE_VAL) || (!hy_input_column[input] && !hy_allowed(hy_input_place[input], value))) {
+        return @NAME@_NOT_ALLOWED;
+    }
     if (hy_input_column[input]) {
         /* A column of a record, read linearly and as it is held. */
         m->u[hy_input_place[input]] = value;
@@ -418,6 +433,9 @@ int @NAME@_set_parameter(@NAME@ *m, int parameter, double value)
 {
     if (parameter < 0 || parameter >= @NAME@_PARAMETERS) {
         return @NAME@_NO_SUCH;
+    }
+    if (!hy_allowed(hy_parameter_place[parameter], value)) {
+        return @NAME@_NOT_ALLOWED;
     }
     m->p[hy_parameter_place[parameter]] = value;
     m->given[hy_parameter_place[parameter]] = 1;
@@ -456,6 +474,8 @@ const char *@NAME@_message(const @NAME@ *m, int status)
         return hy_reaction_text[m->broken];
     case @NAME@_NO_SUCH:
         return "no such input or parameter";
+    case @NAME@_NOT_ALLOWED:
+        return "a value is not finite, or outside the bounds of its parameter or of one that follows from it";
     default:
         return "no such status";
     }

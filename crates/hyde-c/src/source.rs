@@ -5,6 +5,7 @@ use crate::factors::Factors;
 use crate::fixed_step::FixedStep;
 use crate::names::Names;
 use hyde_program::{Coefficients, Function, Program, ReactionKind, RelationUse, Target, Wrt};
+use hyde_units::{Allowed, Kind};
 use std::fmt::{Display, Write as _};
 
 /// The solution of linear equations and the step, the same for every model; `@NAME@` is the name of the model.
@@ -33,6 +34,7 @@ pub(crate) fn text(
         ("ASSIGNMENTS", program.assignments.len()),
         ("PINS", program.pins.len()),
         ("CLOCKS", program.clocks.len()),
+        ("PARAMETERS", program.n_parameters),
         ("HOLDS", program.holds.iter().map(|hold| hold.len).sum()),
         ("PARTIALS", program.partials(Function::Residual).len()),
         ("SCHEDULED", usize::from(scheduled)),
@@ -53,6 +55,7 @@ pub(crate) fn text(
     events(&mut text, program);
     clocks(&mut text, model);
     interface(&mut text, model, names);
+    bounds(&mut text, program);
     let coefficient = model
         .inputs
         .iter()
@@ -354,6 +357,28 @@ fn interface(text: &mut String, model: &FixedStep<'_>, names: &Names) {
         "parameter_place",
         model.settable.iter().map(|own| own.place),
     );
+}
+
+/// The values that the places of the parameters may have.
+fn bounds(text: &mut String, program: &Program) {
+    let n = program.n_parameters;
+    let (mut low, mut high) = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]);
+    let mut is_whole = vec![0_u8; n];
+    for parameter in &program.parameters {
+        let Allowed { kind, min, max } = parameter.allowed;
+        let (least, most) = match kind {
+            Kind::Boolean => (0.0, 1.0),
+            Kind::Real | Kind::Integer => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        for place in parameter.place..parameter.place + parameter.len {
+            low[place] = min.unwrap_or(least);
+            high[place] = max.unwrap_or(most);
+            is_whole[place] = u8::from(kind != Kind::Real);
+        }
+    }
+    numbers(text, "low", &low);
+    numbers(text, "high", &high);
+    table(text, "unsigned char", "whole", is_whole.iter());
 }
 
 fn whole(number: usize) -> i64 {

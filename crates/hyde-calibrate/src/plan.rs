@@ -88,6 +88,7 @@ impl CalibrationPlan {
             starts: 1,
             span: study.name.span,
         };
+        let mut varies = false;
         for item in &study.items {
             match item {
                 StudyItem::Vary(list) => {
@@ -137,6 +138,15 @@ impl CalibrationPlan {
                             diagnostics.push(refusals::starts_not_a_number(name.span))
                         }
                     },
+                    "vary" => {
+                        let all = values.iter().find_map(|value| match value {
+                            SettingValue::Everything(part) => Some(part.dotted()),
+                            SettingValue::Expr(_) => None,
+                        });
+                        let part = all.unwrap_or_default();
+                        diagnostics.push(refusals::varies_all_of(&part, name.span));
+                        varies = true;
+                    }
                     other => diagnostics.push(refusals::no_such_setting(other, name.span)),
                 },
             }
@@ -144,7 +154,7 @@ impl CalibrationPlan {
         if plan.fit.is_empty() {
             diagnostics.push(refusals::no_fit(plan.span));
         }
-        if plan.vary.is_empty() {
+        if plan.vary.is_empty() && !varies {
             diagnostics.push(refusals::no_vary(plan.span));
         }
         plan.check_labels(diagnostics);

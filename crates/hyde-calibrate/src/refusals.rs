@@ -11,6 +11,10 @@ diagnostics! {
         "a calibration varies parameters"; at target, "in this study";
         help "write `vary uncertain;`, or name them: `vary guide.F, guide.b;`";
     }
+    fn varies_all_of(part: &str, here: Span) = error BadStudy {
+        "`vary` takes parameters by name, and `{part}.*` is not one"; at here, "in this study";
+        help "name them, `vary {part}.k, {part}.d;` (`hyde params FILE` lists them), or write `vary uncertain;`: all that have a spread";
+    }
     fn uncertain_per(label: &str, per: Span) = error BadStudy {
         "`uncertain` stands for many parameters"; at per, "in this study";
         help "name those that differ per {label}: `vary uncertain; vary saddle.M per {label};`";

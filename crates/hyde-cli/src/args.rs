@@ -168,7 +168,12 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) fmus: FmuProcessArgs,
     /// Stop time, in s or with its unit, instead of that of the experiment
-    #[arg(long, value_name = "TIME", value_parser = seconds)]
+    #[arg(
+        long,
+        value_name = "TIME",
+        value_parser = seconds,
+        allow_negative_numbers = true
+    )]
     pub(crate) stop: Option<f64>,
     /// Relative tolerance, instead of that of the experiment
     #[arg(long)]
@@ -311,10 +316,20 @@ pub(crate) struct PlotArgs {
     #[arg(long, value_name = "N", default_value_t = 300.0)]
     pub(crate) dpi: f64,
     /// Start of the plot, in s or with its unit
-    #[arg(long, value_name = "TIME", value_parser = seconds)]
+    #[arg(
+        long,
+        value_name = "TIME",
+        value_parser = seconds,
+        allow_negative_numbers = true
+    )]
     pub(crate) from: Option<f64>,
     /// End of the plot, in s or with its unit
-    #[arg(long, value_name = "TIME", value_parser = seconds)]
+    #[arg(
+        long,
+        value_name = "TIME",
+        value_parser = seconds,
+        allow_negative_numbers = true
+    )]
     pub(crate) to: Option<f64>,
     /// Sampling period, in s or with its unit, of records without a time column
     #[arg(long, value_name = "TIME", value_parser = seconds)]
@@ -325,7 +340,7 @@ pub(crate) struct PlotArgs {
 #[derive(Debug, Args)]
 pub(crate) struct AboutArgs {
     /// Operating point: a time of the run, `--at '0.3 [s]'`, or `start`, or `steady`
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub(crate) at: Option<String>,
     /// Linearise with a component in this mode: `--in guide=slip` (repeatable)
     #[arg(long = "in", value_name = "NAME=MODE")]

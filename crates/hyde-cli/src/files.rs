@@ -66,7 +66,49 @@ pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), String> {
     write_with(path, |file| file.write_all(content))
 }
 
-/// The same for a file that is made piece by piece.
+/// Writes a file of the user's anew, which stays the file that it is: a link leads to it still, and its permissions, its owner
+/// and its other names are as they were. One that is read-only is left.
+#[allow(clippy::disallowed_methods, reason = "the command line writes files")]
+pub(crate) fn rewrite(path: &Path, content: &[u8]) -> Result<(), String> {
+    let failed = |error: std::io::Error| cannot_write(path, &error);
+    let place = real(path).unwrap_or_else(|| path.to_path_buf());
+    let facts = std::fs::metadata(&place).map_err(failed)?;
+    if facts.permissions().readonly() {
+        let error = std::io::Error::from(ErrorKind::PermissionDenied);
+        return Err(format!("{}; the file is read-only", failed(error)));
+    }
+    let folder = place.parent().unwrap_or(Path::new("."));
+    let beside = tempfile::Builder::new()
+        .prefix(UNFINISHED)
+        .tempfile_in(folder)
+        .ok();
+    let beside = beside.filter(|file| takes_its_place(file, &facts));
+    let Some(mut file) = beside else {
+        // Only the file itself has its names and its owner.
+        return std::fs::write(&place, content).map_err(failed);
+    };
+    file.write_all(content)
+        .and_then(|()| file.as_file().set_permissions(facts.permissions()))
+        .and_then(|()| file.as_file().sync_all())
+        .map_err(failed)?;
+    file.persist(&place).map_err(|error| failed(error.error))?;
+    sync_folder(folder)
+}
+
+/// Whether a new file can stand for another one: it has the same owner, and the other one has no second name.
+#[cfg(unix)]
+fn takes_its_place(file: &tempfile::NamedTempFile, other: &std::fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let own = file.as_file().metadata();
+    own.is_ok_and(|own| other.nlink() == 1 && (own.uid(), own.gid()) == (other.uid(), other.gid()))
+}
+
+#[cfg(not(unix))]
+fn takes_its_place(_: &tempfile::NamedTempFile, _: &std::fs::Metadata) -> bool {
+    true
+}
+
+/// The same as [`write`] for a file that is made piece by piece.
 pub(crate) fn write_with(
     path: &Path,
     make: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>,
@@ -172,4 +214,37 @@ fn make_readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
     Ok(())
+}
+
+#[cfg(all(test, unix))]
+#[allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    reason = "a test writes files, and may panic"
+)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+
+    #[test]
+    fn a_file_that_is_written_anew_stays_the_file_that_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let (own, link, second) = (place("own.hyde"), place("link.hyde"), place("second.hyde"));
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        std::fs::write(&own, "one").unwrap();
+        std::fs::set_permissions(&own, std::fs::Permissions::from_mode(0o640)).unwrap();
+        symlink("own.hyde", &link).unwrap();
+        rewrite(&link, b"two").unwrap();
+        assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(std::fs::read(&own).unwrap(), b"two");
+        assert_eq!(mode(&own), 0o640);
+        std::fs::hard_link(&own, &second).unwrap();
+        rewrite(&own, b"three").unwrap();
+        assert_eq!(std::fs::read(&second).unwrap(), b"three");
+        std::fs::set_permissions(&own, std::fs::Permissions::from_mode(0o444)).unwrap();
+        let refused = rewrite(&own, b"four").unwrap_err();
+        assert!(refused.ends_with("the file is read-only"), "{refused}");
+        assert_eq!(std::fs::read(&second).unwrap(), b"three");
+    }
 }

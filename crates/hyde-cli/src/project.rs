@@ -118,7 +118,7 @@ pub(crate) trait Told {
     /// Where a law may act on the model and what it may be made of, as long as both are in order; reports and ends otherwise.
     fn laws_or_report(&mut self, args: &ModelArgs) -> Result<Laws, Exit>;
 
-    /// Prints warnings, if any.
+    /// Prints warnings, if any, on standard error.
     fn print_warnings(&self, args: &ModelArgs);
 
     /// Prints the diagnostics of a model that is at fault.
@@ -147,7 +147,7 @@ impl Told for Project {
     }
 
     fn print_warnings(&self, args: &ModelArgs) {
-        if !self.diagnostics.is_empty() && !args.json && !args.quiet {
+        if !self.diagnostics.is_empty() && !args.quiet {
             print_diagnostics(&self.diagnostics, &self.sources, "");
         }
     }

@@ -25,7 +25,7 @@ pub use hyde_flatten::{FUNCTIONS, usage};
 pub use hyde_flatten::{FmuInterface, Form, FreeInputs, Header, TableFile, fmu_has_no_equations};
 pub use hyde_ir::{LawShape, Prior, Quantity};
 pub use hyde_jit::Backend;
-pub use ideal::{changed, ideals};
+pub use ideal::{changed, covers, ideals};
 pub use known::{
     Additions, Candidate, Knob, LawSite, LawVariable, Laws, Meaning, MeaningOf, ValueOf,
     candidates, laws, meaning,

@@ -2,11 +2,11 @@
 //! nobody found a value for keep the one they have:
 //!
 //! ```text
-//! M[2] = 130 kg, guide[1].F = 30 N      M = {100, 130} [kg], guide.F = {30, 20} [N]
+//! M[2] = 130 kg, guide[1].F = 30 N      M = {100, 130} [kg], guide[1].F = 30 [N]
 //! ```
 
 use crate::write_back::Calibrated;
-use hyde_program::Program;
+use hyde_program::{Parameter, Program};
 use hyde_units::{Kind, NamedUnit};
 use std::collections::BTreeMap;
 
@@ -18,10 +18,10 @@ pub fn modifications(
     (program, p): (&Program, &[f64]),
     number: &dyn Fn(f64) -> String,
 ) -> Vec<String> {
-    let mut known: Vec<String> = Vec::new();
+    let mut known: Vec<&str> = Vec::new();
     let mut out = Vec::new();
     for value in values {
-        let (array, subscripts) = parted(&value.path);
+        let (array, element) = parted(&value.path);
         let kind = program.parameter(&value.path);
         let kind = kind.map_or(Kind::Real, |(parameter, _)| parameter.allowed.kind);
         let written = |si: f64| match kind {
@@ -29,7 +29,7 @@ pub fn modifications(
             Kind::Integer => si.round().to_string(),
             Kind::Boolean => (si > 0.5).to_string(),
         };
-        if subscripts.is_empty() {
+        if element.is_none() {
             let own = written(value.value);
             out.push(format!("{array} = {own}{}", behind(&value.unit)));
             continue;
@@ -37,16 +37,20 @@ pub fn modifications(
         if known.contains(&array) {
             continue;
         }
-        let mut elements = elements(&array, program, p);
+        let mut elements = elements(array, program, p);
         for value in values {
-            let (own, subscripts) = parted(&value.path);
-            if own == array {
-                elements.insert(subscripts, value.value);
+            if let (own, Some(element)) = parted(&value.path)
+                && own == array
+            {
+                elements.insert(element, value.value);
             }
         }
-        let elements: Vec<(Vec<usize>, f64)> = elements.into_iter().collect();
-        let list = list(&elements, 0, &written);
-        out.push(format!("{array} = {list}{}", behind(&value.unit)));
+        let list: Vec<String> = elements.into_values().map(written).collect();
+        out.push(format!(
+            "{array} = {{{}}}{}",
+            list.join(", "),
+            behind(&value.unit)
+        ));
         known.push(array);
     }
     out
@@ -60,60 +64,37 @@ pub(crate) fn behind(unit: &NamedUnit) -> String {
     }
 }
 
-/// The name without its subscripts, and these: `row[2].M[1]` is `row.M`, 2 and 1.
-fn parted(path: &str) -> (String, Vec<usize>) {
-    let (mut name, mut subscripts) = (String::new(), Vec::new());
-    for part in path.split('[') {
-        let closed = part.split_once(']');
-        let subscript = closed.and_then(|(number, rest)| Some((number.parse().ok()?, rest)));
-        match subscript {
-            Some((number, rest)) => {
-                subscripts.push(number);
-                name.push_str(rest);
-            }
-            None => name.push_str(part),
-        }
+/// The name of an array and the number of the element, from 1: `row[2].M[1]` is `row[2].M` and 1.
+fn parted(path: &str) -> (&str, Option<usize>) {
+    let closed = path
+        .strip_suffix(']')
+        .and_then(|path| path.rsplit_once('['));
+    let element = closed.and_then(|(array, number)| Some((array, number.parse().ok()?)));
+    match element {
+        Some((array, number)) => (array, Some(number)),
+        None => (path, None),
     }
-    (name, subscripts)
 }
 
-/// The elements of an array by their subscripts, with the values they have.
-fn elements(array: &str, program: &Program, p: &[f64]) -> BTreeMap<Vec<usize>, f64> {
-    let places = 0..p.len();
-    let named = places.filter_map(|place| {
-        let (_, name) = program.parameter_at(place)?;
-        let (own, subscripts) = parted(&name);
-        (own == array && !subscripts.is_empty()).then_some((subscripts, p[place]))
-    });
-    named.collect()
-}
-
-/// `{100, 130}`, and lists in lists, of elements in the order of their subscripts.
-fn list(elements: &[(Vec<usize>, f64)], level: usize, number: &dyn Fn(f64) -> String) -> String {
-    match elements {
-        [(subscripts, value)] if subscripts.len() == level => number(*value),
-        _ => {
-            let groups = elements.chunk_by(|(a, _), (b, _)| a.get(level) == b.get(level));
-            let groups: Vec<String> = groups.map(|own| list(own, level + 1, number)).collect();
-            format!("{{{}}}", groups.join(", "))
-        }
-    }
+/// The elements of an array by their numbers, with the values they have.
+fn elements(array: &str, program: &Program, p: &[f64]) -> BTreeMap<usize, f64> {
+    let known = program.parameters.iter();
+    let parameter = known.clone().find(|known| known.name == array);
+    let of = |parameter: &Parameter| {
+        let places = parameter.place..parameter.place + parameter.len;
+        (1..).zip(places.map(|place| p[place])).collect()
+    };
+    parameter.map(of).unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{list, parted};
+    use super::parted;
 
     #[test]
-    fn subscripts_become_lists_in_lists() {
-        assert_eq!(parted("row[2].M[1]"), ("row.M".to_owned(), vec![2, 1]));
-        assert_eq!(parted("guide.F"), ("guide.F".to_owned(), Vec::new()));
-        let elements: Vec<(Vec<usize>, f64)> = [[1, 1], [1, 2], [2, 1], [2, 2]]
-            .into_iter()
-            .zip(1_u32..)
-            .map(|(subscripts, value)| (subscripts.to_vec(), f64::from(value)))
-            .collect();
-        let text = list(&elements, 0, &|value| value.to_string());
-        assert_eq!(text, "{{1, 2}, {3, 4}}");
+    fn the_last_subscript_is_of_the_element() {
+        assert_eq!(parted("row[2].M[1]"), ("row[2].M", Some(1)));
+        assert_eq!(parted("row[2].M"), ("row[2].M", None));
+        assert_eq!(parted("guide.F"), ("guide.F", None));
     }
 }

@@ -51,4 +51,4 @@ mod values;
 pub use lens::{Action, Order};
 pub use nobody::Nobody;
 pub use outcome::{Course, Courses, Failure, Label, Outcome};
-pub use server::{Host, PAUSE, serve};
+pub use server::{Ended, Host, PAUSE, serve};

@@ -133,7 +133,7 @@ impl Uses {
         }
         if let Some(place) = &self.unknown {
             return Err(format!(
-                "the meaning of `{old}` is not known at {place}: repair that place first"
+                "the meaning of `{old}` is not known at {place}: repair that place if it has an error, else rename by hand"
             ));
         }
         for path in self.texts.keys() {

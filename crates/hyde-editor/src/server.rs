@@ -19,7 +19,7 @@ use hyde_syntax::ast::File;
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification as tell;
 use lsp_types::notification::Notification as _;
-use lsp_types::request::{CodeLensRefresh, Request as _, ShowDocument};
+use lsp_types::request::{CodeLensRefresh, Request as _, ShowDocument, Shutdown};
 use lsp_types::{
     InitializeParams, MessageType, NumberOrString, Position, PublishDiagnosticsParams,
     ShowDocumentParams, ShowMessageParams,
@@ -78,6 +78,17 @@ enum Told {
     Instant,
 }
 
+/// How a session ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// By `exit` after `shutdown`.
+    ShutDown,
+    /// By `exit` alone.
+    Exit,
+    /// The editor is gone.
+    Gone,
+}
+
 /// Serves an editor until it ends the session.
 ///
 /// # Errors
@@ -86,7 +97,7 @@ pub fn serve(
     connection: &Connection,
     disk: Arc<dyn World>,
     host: Box<dyn Host>,
-) -> Result<(), String> {
+) -> Result<Ended, String> {
     let (id, params) = connection
         .initialize_start()
         .map_err(|error| error.to_string())?;
@@ -118,7 +129,7 @@ pub fn serve(
     let (done, results) = unbounded::<Checked>();
     std::thread::scope(|scope| {
         scope.spawn(move || work(&to_do, &done));
-        server.run(connection, jobs, (&results, &heard))
+        Ok(server.run(connection, jobs, (&results, &heard)))
     })
 }
 
@@ -138,8 +149,9 @@ impl Server {
         connection: &Connection,
         jobs: Sender<Job>,
         (results, heard): (&Receiver<Checked>, &Receiver<Told>),
-    ) -> Result<(), String> {
+    ) -> Ended {
         let mut asked = 0;
+        let mut shut_down = false;
         // The texts to check once the pause is over.
         let mut due: BTreeSet<PathBuf> = BTreeSet::new();
         let mut pause = never();
@@ -154,16 +166,24 @@ impl Server {
             select! {
                 recv(connection.receiver) -> message => {
                     let Ok(message) = message else {
-                        return Ok(());
+                        return if shut_down { Ended::ShutDown } else { Ended::Gone };
                     };
                     match message {
+                        Message::Request(request) if shut_down => {
+                            let reason = "the session was shut down".to_owned();
+                            let code = ErrorCode::InvalidRequest as i32;
+                            let refused = Response::new_err(request.id, code, reason);
+                            send(connection, Message::Response(refused));
+                        }
+                        Message::Request(request) if request.method == Shutdown::METHOD => {
+                            shut_down = true;
+                            let done = Response::new_ok(request.id, ());
+                            send(connection, Message::Response(done));
+                        }
+                        Message::Notification(told) if told.method == tell::Exit::METHOD => {
+                            return if shut_down { Ended::ShutDown } else { Ended::Exit };
+                        }
                         Message::Request(request) => {
-                            let ended = connection
-                                .handle_shutdown(&request)
-                                .map_err(|error| error.to_string())?;
-                            if ended {
-                                return Ok(());
-                            }
                             send(connection, Message::Response(self.respond(request)));
                         }
                         Message::Notification(told) => {

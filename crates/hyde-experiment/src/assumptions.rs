@@ -39,7 +39,6 @@ pub enum Assumption {
 /// its values is exact to a relative and an absolute tolerance.
 pub(crate) fn assumptions(
     program: &Program,
-    parameters: &[f64],
     inputs: &[usize],
     point: &OperatingPoint,
     tolerances: (f64, f64),
@@ -49,9 +48,9 @@ pub(crate) fn assumptions(
     let mut look = Look {
         program,
         inputs,
-        directions: program.kernels.parameter_directions(inputs, parameters),
+        directions: program.kernels.parameter_directions(inputs, &point.p),
         tolerances,
-        at: point.at(parameters),
+        at: point.at(),
         work: Workspace::new(program.n_work),
     };
     for relation in look.at_zero() {

@@ -7,7 +7,7 @@ use hyde_program::{Constant, Measured, Preparation, Program};
 use hyde_signal::filter::{LowPass, central_difference};
 use hyde_signal::{Table, statistics, wrap};
 use hyde_sim::Results;
-use hyde_units::NamedUnit;
+use hyde_units::{NamedUnit, engineering_difference};
 use std::collections::BTreeMap;
 
 /// A measured channel with its error.
@@ -56,6 +56,15 @@ pub(crate) fn channels(
             channel: measured.name.clone(),
             cause: cause.to_owned(),
         };
+        let noise = program
+            .kernels
+            .constant(Constant::Noise(number), parameters);
+        if let Some(negative) = noise.filter(|noise| *noise < 0.0) {
+            return Err(error(&format!(
+                "its noise is {}, and a standard deviation is not negative: write it without the sign",
+                engineering_difference(negative, &measured.unit)
+            )));
+        }
         let (record, column) = &measured.source;
         let table = records
             .get(record)
@@ -104,9 +113,7 @@ pub(crate) fn channels(
             unit: measured.unit.clone(),
             rms: statistics::rms(&difference),
             relative_percent: statistics::relative_error_percent(&of_record, &of_model),
-            noise: program
-                .kernels
-                .constant(Constant::Noise(number), parameters),
+            noise,
             time,
             measured: of_record,
             simulated: of_model,
@@ -148,7 +155,8 @@ pub(crate) fn uneven(table: &Table, what: &str) -> String {
     });
     let shown = |step| hyde_units::significant(step, 3);
     format!(
-        "its rows are {} to {} s apart, and {what} even ones: resample the record, or declare `every`",
+        "its rows are {} to {} s apart, and {what} even ones: resample the record. Declare `every` only if the samples are even and \
+         their times are wrong: it puts each row one period after the row before it",
         shown(least),
         shown(most)
     )

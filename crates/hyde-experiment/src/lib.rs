@@ -56,7 +56,7 @@ pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
 pub use run::{
     Incomplete, Options, Run, RunError, extent, incomplete, is_over_frequency, parameters, places,
-    record_value, rtol_of, run, run_again, setup,
+    record_value, rtol_of, run, run_again, setup, within_bounds,
 };
 pub use sampled::{Clocked, Sampled};
 pub use state_space::{SampleTimes, StateSpace, StateSpaceSignal, state_space};

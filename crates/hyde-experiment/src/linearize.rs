@@ -84,6 +84,8 @@ pub enum LinearizeError {
     DelayAndClock,
     /// The algebraic variables are not determined at the operating point.
     Singular,
+    /// The run begins at the second time in s, behind the operating point that is asked for.
+    BeforeStart(f64, f64),
     /// No operating point was found.
     Failed(Box<Failure>),
 }
@@ -144,6 +146,11 @@ pub fn linearize_about(
     }
     let mut setup = setup_with(program, records, parameters.to_vec());
     setup.reached = about.reached.cloned().unwrap_or_default();
+    if let PointTime::At(t) = about.time
+        && t < setup.start_s
+    {
+        return Err(LinearizeError::BeforeStart(t, setup.start_s));
+    }
     let modes = PointModes::Sliding(about.modes);
     let point = hyde_sim::operating_point(program, &setup, about.time, modes)
         .map_err(LinearizeError::Failed)?;
@@ -151,9 +158,9 @@ pub fn linearize_about(
         PointTime::Start => START,
         PointTime::At(_) | PointTime::Steady => (setup.rtol, setup.atol),
     };
-    let assumptions = assumptions(program, parameters, &places, &point, tolerances);
+    let assumptions = assumptions(program, &places, &point, tolerances);
     let mut work = Workspace::new(program.n_work);
-    let at = point.at(parameters);
+    let at = point.at();
     let differential = program.differential(&point.z);
     let states: Vec<usize> = (0..n).filter(|&i| differential[i]).collect();
     let algebraic: Vec<usize> = (0..n).filter(|&i| !differential[i]).collect();

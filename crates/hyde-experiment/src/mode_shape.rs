@@ -25,12 +25,11 @@ pub struct ModeShape {
 #[must_use]
 pub fn mode_shape(
     program: &Program,
-    parameters: &[f64],
     linear: &Linear,
     (poles, pole): (&Poles, &Pole),
 ) -> Option<ModeShape> {
     let shape = poles.states(linear, pole)?;
-    let mut energies = Energies::new(program, parameters, linear);
+    let mut energies = Energies::new(program, linear);
     let parts = [shape.map(|x| x.re), shape.map(|x| x.im)];
     // The scale is found from the first look at a unit vector.
     let mut scale = 1.0;
@@ -65,7 +64,6 @@ pub fn mode_shape(
 /// Stored energies about the operating point.
 struct Energies<'a> {
     program: &'a Program,
-    parameters: &'a [f64],
     linear: &'a Linear,
     work: Workspace,
     outputs: Vec<f64>,
@@ -73,10 +71,9 @@ struct Energies<'a> {
 }
 
 impl<'a> Energies<'a> {
-    fn new(program: &'a Program, parameters: &'a [f64], linear: &'a Linear) -> Self {
+    fn new(program: &'a Program, linear: &'a Linear) -> Self {
         let mut energies = Self {
             program,
-            parameters,
             linear,
             work: Workspace::new(program.n_work),
             outputs: vec![0.0; program.rows(Function::Outputs)],
@@ -106,7 +103,7 @@ impl<'a> Energies<'a> {
         let at = Point {
             y: &y,
             yp: &yp,
-            ..point.at(self.parameters)
+            ..point.at()
         };
         let kernels = &self.program.kernels;
         kernels.evaluate(Function::Outputs, at, &mut self.work, &mut self.outputs);

@@ -29,7 +29,6 @@ pub(crate) struct Eigen {
 /// `N(s)` of a program at an operating point.
 pub(crate) struct Pencil<'a> {
     program: &'a Program,
-    parameters: &'a [f64],
     linear: &'a Linear,
     residual: Dense,
     /// What is delayed, where something is.
@@ -38,15 +37,14 @@ pub(crate) struct Pencil<'a> {
 }
 
 impl<'a> Pencil<'a> {
-    pub(crate) fn new(program: &'a Program, parameters: &'a [f64], linear: &'a Linear) -> Self {
+    pub(crate) fn new(program: &'a Program, linear: &'a Linear) -> Self {
         let mut work = Workspace::new(program.n_work);
-        let at = linear.point.at(parameters);
+        let at = linear.point.at();
         Self {
             residual: Dense::of(program, Function::Residual, at, &mut work, &[], &[]),
             now: Dense::of(program, Function::Delayed, at, &mut work, &[], &[]),
             times: program.delays.iter().map(|delay| delay.time_s).collect(),
             program,
-            parameters,
             linear,
         }
     }
@@ -199,7 +197,7 @@ impl<'a> Pencil<'a> {
             y: &y,
             yp: &yp,
             u: &u,
-            ..point.at(self.parameters)
+            ..point.at()
         };
         let mut work = Workspace::new(program.n_work);
         let mut found = DMatrix::zeros(program.rows(function), places.len());

@@ -214,7 +214,10 @@ pub fn incomplete(
 }
 
 /// Whether every parameter is within its bounds, also those that are computed from others.
-pub(crate) fn within_bounds(program: &Program, parameters: &[f64]) -> Result<(), RunError> {
+///
+/// # Errors
+/// [`RunError::NotAllowed`] of the first that is not.
+pub fn within_bounds(program: &Program, parameters: &[f64]) -> Result<(), RunError> {
     for parameter in &program.parameters {
         let Allowed { min, max, .. } = parameter.allowed;
         let bounds = Allowed {

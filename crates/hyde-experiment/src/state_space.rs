@@ -78,14 +78,13 @@ impl StateSpace {
 #[must_use]
 pub fn state_space(
     program: &Program,
-    parameters: &[f64],
     linear: &Linear,
     (inputs, outputs): (&[String], &[usize]),
 ) -> Option<StateSpace> {
     if linear.delayed.is_some() {
         return None;
     }
-    let values = reported(program, parameters, linear);
+    let values = reported(program, linear);
     let signal = |number: usize| StateSpaceSignal {
         name: program.outputs[number].name.clone(),
         unit: Some(program.outputs[number].dimension.usual_unit()),
@@ -168,10 +167,10 @@ pub fn state_space(
 }
 
 /// The values of all reported quantities at the operating point.
-fn reported(program: &Program, parameters: &[f64], linear: &Linear) -> Vec<f64> {
+fn reported(program: &Program, linear: &Linear) -> Vec<f64> {
     let mut values = vec![0.0; program.rows(Function::Outputs)];
     let mut work = Workspace::new(program.n_work);
-    let at = linear.point.at(parameters);
+    let at = linear.point.at();
     program
         .kernels
         .evaluate(Function::Outputs, at, &mut work, &mut values);

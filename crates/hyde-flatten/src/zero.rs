@@ -18,8 +18,12 @@ pub(crate) enum Zero {
     Open,
     /// It counts from a zero point of its own: 20 degC.
     Own,
+    /// It is such a value with its sign changed.
+    Opposite,
     /// It is the difference of two such values.
     Difference,
+    /// It is the difference of two values of which nothing is known.
+    Perhaps,
 }
 
 impl Zero {
@@ -28,9 +32,37 @@ impl Zero {
         let own = a == Self::Own || b == Self::Own;
         match (a, b) {
             (Self::Own, Self::Difference) if op == BinaryOp::Sub => Self::Own,
+            (Self::Difference, Self::Difference | Self::Open) => Self::Difference,
+            (Self::Open, Self::Difference) if op == BinaryOp::Add => Self::Difference,
+            (Self::Open, Self::Open) if op == BinaryOp::Sub => Self::Perhaps,
+            (Self::Opposite, Self::Own) | (Self::Own, Self::Opposite) if op == BinaryOp::Add => {
+                Self::Difference
+            }
             _ if own && op == BinaryOp::Sub => Self::Difference,
             _ if own => Self::Own,
             _ => Self::Open,
+        }
+    }
+
+    /// The zero point of a value with its sign changed.
+    pub(crate) fn of_opposite(self) -> Self {
+        match self {
+            Self::Own => Self::Opposite,
+            Self::Opposite => Self::Own,
+            Self::Open | Self::Difference | Self::Perhaps => self,
+        }
+    }
+
+    /// The zero point of a multiple: that of a difference is one.
+    pub(crate) fn of_multiple(a: &Typed, b: &Typed) -> Self {
+        let one = match (is_number(a), is_number(b)) {
+            (_, true) => a.zero,
+            (true, false) => b.zero,
+            (false, false) => Self::Open,
+        };
+        match one {
+            Self::Difference | Self::Perhaps => one,
+            Self::Open | Self::Own | Self::Opposite => Self::Open,
         }
     }
 
@@ -60,15 +92,23 @@ pub(crate) fn absolute_zero(unit: Unit, text: &UnitText) -> String {
 
 /// What to say of a literal in degC that is added: its zero point is added as well.
 pub(crate) fn added_as_difference(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnostic> {
-    if op == BinaryOp::Sub {
+    let both = a.difference.is_some() && b.difference.is_some();
+    if op == BinaryOp::Sub || both {
         return None;
     }
-    let of_literal = |(literal, other): (&Typed, &Typed)| {
-        let may = literal.zero == Zero::Own && other.zero != Zero::Difference;
+    // A literal that comes first is what a difference is added to, `20 [degC] + rise`, unless the other counts from a zero
+    // point too.
+    let of_literal = |(literal, other): (&Typed, &Typed), first: bool| {
+        let counts = match other.zero {
+            Zero::Own => true,
+            Zero::Open => !first,
+            Zero::Opposite | Zero::Difference | Zero::Perhaps => false,
+        };
+        let may = literal.zero == Zero::Own && counts;
         let text = may.then(|| as_difference(literal));
         Some((literal.span, text??))
     };
-    let (span, text) = of_literal((b, a)).or_else(|| of_literal((a, b)))?;
+    let (span, text) = of_literal((b, a), false).or_else(|| of_literal((a, b), true))?;
     Some(refused::zero_point_counts(
         "added as a difference",
         span,
@@ -79,11 +119,7 @@ pub(crate) fn added_as_difference(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Opt
 /// What to say of a literal in degC that a number multiplies: twice 10 degC are 566.3 K.
 pub(crate) fn scaled(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnostic> {
     let of_literal = |(literal, number): (&Typed, &Typed)| {
-        let is_number = number
-            .dim
-            .as_known()
-            .is_some_and(Dimension::is_dimensionless);
-        let may = literal.zero == Zero::Own && is_number;
+        let may = literal.zero == Zero::Own && is_number(number);
         let text = may.then(|| as_difference(literal));
         Some((literal.span, text??))
     };
@@ -94,6 +130,11 @@ pub(crate) fn scaled(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnosti
         span,
         &text,
     ))
+}
+
+fn is_number(value: &Typed) -> bool {
+    let known = value.dim.as_known();
+    known.is_some_and(Dimension::is_dimensionless)
 }
 
 /// What to say of a literal in degC that is the step of a grid.

@@ -286,7 +286,7 @@ impl Instance {
 
     fn started(&mut self) -> Result<()> {
         if self.running.is_none() {
-            let parameters = self.parameters();
+            let parameters = self.allowed_parameters()?;
             let running = Running::start(&self.model, self.asked, parameters);
             self.running = Some(running.map_err(|error| self.failed(&error))?);
             (self.pending, self.placed, self.outputs) = (false, true, None);
@@ -317,7 +317,7 @@ impl Instance {
     /// Takes what is set into a run that integrates itself.
     fn apply(&mut self) -> Result<()> {
         if self.pending {
-            let parameters = self.parameters();
+            let parameters = self.allowed_parameters()?;
             self.working(|session| session.set_parameters(parameters))?;
             (self.pending, self.outputs) = (false, None);
         }

@@ -9,6 +9,7 @@
 //! The FMU is stepped behind the tick: the run puts its outputs into `y_k`.
 
 use crate::description::{Description, FmuVariable, NumberKind, Role};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// What an FMU is to a model.
@@ -40,7 +41,11 @@ impl Interface {
     /// The interface of a description.
     #[must_use]
     pub fn of(description: &Description, package: &str, model: &str) -> Self {
-        let mut names = Names::default();
+        let own = description.variables.iter().map(|own| own.name.clone());
+        let mut names = Names {
+            own: own.collect(),
+            ..Names::default()
+        };
         let mut found = Self::default();
         let (mut types, mut declared) = (Vec::new(), String::new());
         let (mut clocked, mut ticked) = (String::new(), String::new());
@@ -184,15 +189,18 @@ fn quoted(text: &str) -> String {
     format!("\"{plain}\"")
 }
 
-/// Names of a model for those of an FMU, each once.
+/// Names of a model for those of an FMU, each once. One that is a word of the language keeps it, before others that become
+/// this word.
 struct Names {
     taken: Vec<String>,
+    own: BTreeSet<String>,
 }
 
 impl Default for Names {
     fn default() -> Self {
         Self {
             taken: ["step", "fmu", "time", "pi"].map(str::to_owned).to_vec(),
+            own: BTreeSet::new(),
         }
     }
 }
@@ -218,7 +226,7 @@ impl Names {
         }
         let mut free = word.clone();
         let mut number = 2;
-        while self.taken.contains(&free) {
+        while self.taken.contains(&free) || free != name && self.own.contains(&free) {
             free = format!("{word}_{number}");
             number += 1;
         }
@@ -248,5 +256,15 @@ mod tests {
         for (name, word) in all {
             assert_eq!(names.of(name), word, "{name}");
         }
+        let mut names = Names {
+            own: BTreeSet::from(["T.in".to_owned(), "T_in".to_owned()]),
+            ..Names::default()
+        };
+        assert_eq!(
+            names.of("T.in"),
+            "T_in_2",
+            "the word is that of another one"
+        );
+        assert_eq!(names.of("T_in"), "T_in");
     }
 }

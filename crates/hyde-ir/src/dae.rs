@@ -103,6 +103,8 @@ pub struct Dae {
     pub partials: Vec<(Function, Vec<Partial>)>,
     /// How fast the arguments of sines turn that the time and parameters determine, where these rates are constant; rad/s.
     pub turning: Vec<ExprId>,
+    /// Arguments of the sines and cosines in root functions, rad.
+    pub angles: Vec<ExprId>,
     /// Whether the residual has an exponential of unknowns that grows.
     pub exponential: bool,
     /// Whether the residual reads the time, a record column or a delayed value.
@@ -287,6 +289,7 @@ impl Dae {
             Function::Outputs => self.n_outputs(),
             Function::Initial => self.n_initial_values(),
             Function::Delayed => self.n_delayed(),
+            Function::Angles => self.angles.len(),
         }
     }
 }

@@ -313,5 +313,6 @@ pub(crate) fn name(function: Function) -> &'static str {
         Function::Outputs => "outputs",
         Function::Initial => "initial",
         Function::Delayed => "delayed",
+        Function::Angles => "angles",
     }
 }

@@ -69,6 +69,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
         holds: dae.holds.clone(),
         delays: delays(dae),
         turning: dae.turning.len(),
+        angles: dae.angles.len(),
         exponential: dae.exponential,
         timed: dae.timed,
         foreign: dae.foreign.iter().map(|part| foreign(dae, part)).collect(),

@@ -2,15 +2,15 @@
 //! own.
 
 use crate::expression::{is_state, literal};
-use crate::mode_number;
 use crate::names::{Names, column_name, mode_name, quoted};
+use crate::{Begun, mode_number};
 use hyde_ir::dae::{Dae, InitialCondition, Space};
-use hyde_ir::{Interpolation, Quantity};
+use hyde_ir::{Interpolation, ParamId, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 /// Writes all declarations.
-pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
+pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>, begun: &Begun) {
     parameters(text, dae, names);
     for column in 0..dae.columns.len() {
         for interpolation in [Interpolation::Linear, Interpolation::Held] {
@@ -24,10 +24,16 @@ pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
         let variable = &dae.variables[unknown.var];
         for position in unknown.offset..unknown.offset + unknown.len {
             let mut parts = unit(&variable.quantity);
-            if let Some((value, counter)) = starts.get(&(Space::Unknown, position)) {
-                parts.push(format!("start = {}", names.number(*value, *counter)));
-            }
-            if fixed.contains(&position) {
+            let fixed = fixed.contains(&position);
+            let jumped = begun.states.get(&position).filter(|_| fixed);
+            let declared = starts.get(&(Space::Unknown, position));
+            let start = match (jumped, declared) {
+                (Some(value), _) => Some(literal(*value)),
+                (None, Some((value, counter))) => Some(names.number(*value, *counter)),
+                (None, None) => None,
+            };
+            parts.extend(start.map(|value| format!("start = {value}")));
+            if fixed {
                 parts.push("fixed = true".to_owned());
             }
             if is_state(dae, position) {
@@ -59,12 +65,14 @@ pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
         for element in 0..variable.size() {
             let name = names.variable(var, i32::try_from(element).unwrap_or(0));
             let mut parts = unit(&variable.quantity);
-            let start = starts.get(&(Space::Memory, place.base + element));
-            let start = start.map(|(value, counter)| names.number(*value, *counter));
-            parts.push(format!(
-                "start = {}",
-                start.unwrap_or_else(|| "0".to_owned())
-            ));
+            let position = place.base + element;
+            let declared = starts.get(&(Space::Memory, position));
+            let start = match (begun.memory.get(&position), declared) {
+                (Some(value), _) => literal(*value),
+                (None, Some((value, counter))) => names.number(*value, *counter),
+                (None, None) => "0".to_owned(),
+            };
+            parts.push(format!("start = {start}"));
             parts.push("fixed = true".to_owned());
             declare(text, "discrete Real", &name, &parts);
         }
@@ -76,11 +84,13 @@ pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
             .enumerate()
             .map(|(number, name)| format!("{} {name}", mode_number(number)))
             .collect();
+        let left = begun.memory.get(&automaton.place);
+        let first = left.map_or(automaton.initial, |mode| *mode as usize);
         let _ = writeln!(
             text,
             "  Integer {}(start = {}, fixed = true) \"{}\";",
             mode_name(&automaton.name),
-            mode_number(automaton.initial),
+            mode_number(first),
             comment(&modes.join(", "))
         );
     }
@@ -114,29 +124,32 @@ pub(crate) fn reported(text: &mut String, dae: &Dae, names: &Names<'_>) {
 }
 
 fn parameters(text: &mut String, dae: &Dae, names: &Names<'_>) {
+    let found_ones = found_ones(dae);
     for &param in &dae.parameter_order {
         let parameter = &dae.parameters[param];
         let input = dae.experiment.free.contains(&param);
         for element in 0..parameter.size() {
             let at = i32::try_from(element).unwrap_or(0);
             let name = names.parameter(param, at);
-            let value = match parameter.value.as_slice() {
-                [one] => names.number(*one, at),
-                each => each
-                    .get(element)
-                    .map_or_else(|| literal(0.0), |own| names.number(*own, at)),
-            };
+            let value = value_of(dae, names, param, at);
             let mut parts = unit(&parameter.quantity);
             if input {
                 parts.push(format!("start = {value}"));
                 declare(text, "input Real", &name, &parts);
                 continue;
             }
+            let found = found_ones.contains(&param) && !reads_input(dae, param);
+            if parameter.found {
+                parts.push(format!("start = {value}"));
+            }
+            if found {
+                parts.push("fixed = false".to_owned());
+            }
             // What the compiler made of others stands for itself, and an input may be in it.
-            let kind = match (parameter.derived, reads_input(dae, param)) {
-                (_, true) => "Real",
-                (true, false) => "final parameter Real",
-                (false, false) if parameter.is_final => "final parameter Real",
+            let made = parameter.derived || parameter.is_final;
+            let kind = match (reads_input(dae, param), made && !found) {
+                (true, _) => "Real",
+                (false, true) => "final parameter Real",
                 (false, false) => "parameter Real",
             };
             let about = parameter.source.as_deref().unwrap_or_default();
@@ -148,20 +161,76 @@ fn parameters(text: &mut String, dae: &Dae, names: &Names<'_>) {
                 true => String::new(),
                 false => format!("({})", parts.join(", ")),
             };
-            let _ = writeln!(text, "  {kind} {name}{parts} = {value}{about};");
+            let binding = match found {
+                true => String::new(),
+                false => format!(" = {value}"),
+            };
+            let _ = writeln!(text, "  {kind} {name}{parts}{binding}{about};");
         }
     }
 }
 
+/// The value of an element of a parameter.
+fn value_of(dae: &Dae, names: &Names<'_>, param: ParamId, element: i32) -> String {
+    match dae.parameters[param].value.as_slice() {
+        [one] => names.number(*one, element),
+        each => usize::try_from(element)
+            .ok()
+            .and_then(|at| each.get(at))
+            .map_or_else(|| literal(0.0), |own| names.number(*own, element)),
+    }
+}
+
 /// Whether the value of a parameter is made of an input.
-fn reads_input(dae: &Dae, param: hyde_ir::ParamId) -> bool {
-    let values = &dae.parameters[param].value;
-    dae.exprs.below(values).into_iter().any(|id| {
+fn reads_input(dae: &Dae, param: ParamId) -> bool {
+    let mut others = others_in(dae, param).into_iter();
+    others.any(|other| dae.experiment.free.contains(&other) || reads_input(dae, other))
+}
+
+/// The parameters that initial equations find, and those that are made of them.
+fn found_ones(dae: &Dae) -> BTreeSet<ParamId> {
+    let mut found = BTreeSet::new();
+    if dae.parameters.iter().any(|own| own.found) {
+        // Others come behind those that they are made of.
+        for &param in &dae.parameter_order {
+            let mut others = others_in(dae, param).into_iter();
+            if dae.parameters[param].found || others.any(|other| found.contains(&other)) {
+                found.insert(param);
+            }
+        }
+    }
+    found
+}
+
+/// The other parameters that the value of a parameter is made of.
+fn others_in(dae: &Dae, param: ParamId) -> Vec<ParamId> {
+    let below = dae.exprs.below(&dae.parameters[param].value).into_iter();
+    let read = below.filter_map(|id| {
         let hyde_ir::Expr::Param(other, _) = dae.exprs[id] else {
-            return false;
+            return None;
         };
-        dae.experiment.free.contains(&other) || (other != param && reads_input(dae, other))
-    })
+        (other != param).then_some(other)
+    });
+    read.collect()
+}
+
+/// Names and values of the parameters that follow from those which initial equations find: no binding of Modelica may read
+/// these, an initial equation may.
+pub(crate) fn found_with_others(dae: &Dae, names: &Names<'_>) -> Vec<(String, String)> {
+    let found = found_ones(dae);
+    let follows = |param: &&ParamId| !dae.parameters[**param].found && !reads_input(dae, **param);
+    let order = dae.parameter_order.iter();
+    let following = order.filter(|param| found.contains(param)).filter(follows);
+    let elements = following.flat_map(|&param| {
+        let size = i32::try_from(dae.parameters[param].size()).unwrap_or(0);
+        (0..size).map(move |element| (param, element))
+    });
+    elements
+        .map(|(param, element)| {
+            let name = names.parameter(param, element);
+            (name, value_of(dae, names, param, element))
+        })
+        .collect()
 }
 
 fn declare(text: &mut String, kind: &str, name: &str, parts: &[String]) {

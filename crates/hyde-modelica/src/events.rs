@@ -2,7 +2,8 @@
 //!
 //! What an automaton, a clause or a tick sets stands in an algorithm of its own, in which several branches may set one variable;
 //! jumps of states are `reinit`s in equations with the same conditions. A guard acts when it is true in its mode: its condition is `pre(mode) = k
-//! and guard`, which becomes true when the mode is entered too.
+//! and guard`, which becomes true when the mode is entered too. Guards that are true at the start are taken before
+//! ([`crate::Begun`]).
 
 use crate::mode_number;
 use crate::names::{Names, mode_name};
@@ -64,12 +65,25 @@ fn jumps(
     chains: &BTreeMap<(usize, usize), Vec<&Reaction>>,
 ) {
     let mut found: BTreeMap<usize, Vec<(String, String)>> = BTreeMap::new();
-    for reaction in chains.values().flatten() {
-        for assignment in &dae.assignments[reaction.assignments.clone()] {
-            if let Target::State(position) = assignment.target {
+    for reactions in chains.values() {
+        for (number, reaction) in reactions.iter().enumerate() {
+            for assignment in &dae.assignments[reaction.assignments.clone()] {
+                let Target::State(position) = assignment.target else {
+                    continue;
+                };
+                let branches = found.entry(position).or_default();
+                // One that acts instead leaves the state as it is. A branch without a statement would be valid; rumoca drops
+                // it.
+                let name = names.unknown(position);
+                let before = reactions[..number].iter();
+                for other in before.filter(|own| precedes(own, reaction)) {
+                    let condition = condition(dae, names, other);
+                    if branches.iter().all(|own| own.0 != condition) {
+                        branches.push((condition, format!("pre({name})")));
+                    }
+                }
                 let condition = condition(dae, names, reaction);
-                let value = names.set(assignment.value, 0);
-                found.entry(position).or_default().push((condition, value));
+                branches.push((condition, names.set(assignment.value, 0)));
             }
         }
     }
@@ -90,6 +104,22 @@ fn jumps(
             word = "elsewhen";
         }
         text.push_str("  end when;\n");
+    }
+}
+
+/// Whether a reaction acts instead of one behind it in its chain: both can become true at once.
+fn precedes(first: &Reaction, second: &Reaction) -> bool {
+    match (&first.kind, &second.kind) {
+        (ReactionKind::Transition { from: a, .. }, ReactionKind::Transition { from: b, .. }) => {
+            a == b
+        }
+        (
+            ReactionKind::Transition { .. }
+            | ReactionKind::When { .. }
+            | ReactionKind::Edge(_)
+            | ReactionKind::Assert(_),
+            _,
+        ) => true,
     }
 }
 
@@ -151,7 +181,7 @@ fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>) {
         for assignment in &tick.assignments {
             for counter in assignment.range.iter() {
                 let target = names.variable(assignment.var, assignment.index.at(counter));
-                let value = names.number(assignment.value, counter);
+                let value = names.ticked(assignment.value, counter);
                 let _ = writeln!(text, "    {target} := {value};");
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::mode_number;
 use crate::names::{Names, mode_name};
-use hyde_ir::dae::Dae;
+use hyde_ir::dae::{Dae, Space};
 use hyde_ir::{BinaryOp, Expr, ExprId, UnaryOp, VarId};
 use std::collections::HashMap;
 
@@ -13,8 +13,10 @@ enum Place {
     Equation,
     /// In what an event sets: unknowns and memory are as they were before it.
     Event,
-    /// In a condition: modes are as they were before the event.
+    /// In a condition: modes and memory are as they were before the event.
     Condition,
+    /// In a tick of a clock: what other clocks hold, and what equations make of it, is as it was before the instant.
+    Tick,
 }
 
 /// A node as it is written, and whether it is a Boolean.
@@ -29,6 +31,11 @@ impl Names<'_> {
     /// A number that an event sets.
     pub(crate) fn set(&self, id: ExprId, counter: i32) -> String {
         as_number(self.node(id, counter, Place::Event))
+    }
+
+    /// A number that a tick of a clock sets.
+    pub(crate) fn ticked(&self, id: ExprId, counter: i32) -> String {
+        as_number(self.node(id, counter, Place::Tick))
     }
 
     /// A condition of an event.
@@ -58,7 +65,17 @@ impl Names<'_> {
             Expr::Param(param, at) => (self.parameter(param, at.at(counter)), false),
             Expr::Var(var, at) => {
                 let name = self.variable(var, at.at(counter));
-                match place == Place::Event && self.is_kept(var) {
+                let element = at.at(counter);
+                let is_before = match place {
+                    Place::Equation => false,
+                    Place::Event => self.is_kept(var),
+                    Place::Condition => self.is_memory(var),
+                    Place::Tick => match self.made_of_held(var, element) {
+                        Some((value, counter)) => return self.node(value, counter, place),
+                        None => self.is_sampled(var, element),
+                    },
+                };
+                match is_before {
                     true => (before(name), false),
                     false => (name, false),
                 }
@@ -78,7 +95,7 @@ impl Names<'_> {
                 let name = mode_name(&self.dae.automata[automaton].name);
                 let name = match place {
                     Place::Equation => name,
-                    Place::Event | Place::Condition => before(name),
+                    Place::Event | Place::Condition | Place::Tick => before(name),
                 };
                 let mode = mode_number(usize::try_from(mode).unwrap_or(0));
                 (format!("({name} == {mode})"), true)
@@ -99,15 +116,48 @@ impl Names<'_> {
         }
     }
 
+    /// Whether a variable is remembered.
+    fn is_memory(&self, var: VarId) -> bool {
+        let place = self.dae.place(var);
+        place.is_some_and(|own| own.space == Space::Memory)
+    }
+
+    /// Whether a tick changes a variable at the instant at which another one samples it: a held value, and an unknown that
+    /// may follow from one. A state is not set in the same step of the iteration.
+    fn is_sampled(&self, var: VarId, element: i32) -> bool {
+        let Some(place) = self.dae.place(var) else {
+            return false;
+        };
+        let position = place.base + usize::try_from(element).unwrap_or(0);
+        match place.space {
+            Space::Memory => {
+                let mut holds = self.dae.holds.iter();
+                holds.any(|hold| (hold.target..hold.target + hold.len).contains(&position))
+            }
+            Space::Unknown => self.dae.ticks.len() > 1 && !is_state(self.dae, position),
+            Space::Work | Space::Input | Space::Parameter => false,
+        }
+    }
+
+    /// What an element is defined as, with the counter there, if a held value is in it: its left limit is that of the held
+    /// value.
+    fn made_of_held(&self, var: VarId, element: i32) -> Option<(ExprId, i32)> {
+        if !self.made_of_held.contains(&var) {
+            return None;
+        }
+        let own = self.dae.definitions.iter().filter(|own| own.var == var);
+        own.flat_map(|own| own.range.iter().map(move |counter| (own, counter)))
+            .find(|(own, counter)| own.index.at(*counter) == element)
+            .map(|(own, counter)| (own.value, counter))
+    }
+
     /// Whether a variable keeps its value before an event: a state or memory.
     fn is_kept(&self, var: VarId) -> bool {
         let place = self.dae.place(var);
         place.is_some_and(|own| match own.space {
-            hyde_ir::dae::Space::Memory => true,
-            hyde_ir::dae::Space::Unknown => is_state(self.dae, own.base),
-            hyde_ir::dae::Space::Input
-            | hyde_ir::dae::Space::Work
-            | hyde_ir::dae::Space::Parameter => false,
+            Space::Memory => true,
+            Space::Unknown => is_state(self.dae, own.base),
+            Space::Input | Space::Work | Space::Parameter => false,
         })
     }
 }

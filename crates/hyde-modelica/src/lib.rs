@@ -22,6 +22,7 @@ use hyde_ir::Dae;
 use hyde_ir::dae::{InitialCondition, ReactionKind};
 use hyde_study::Project;
 use names::Names;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// The longest text that is written, in bytes.
@@ -36,8 +37,18 @@ pub struct Written {
     pub counts: (usize, usize, usize),
 }
 
+/// What events at the start of a run change, by the places of the solver's vector and of the memory. A class starts behind
+/// them: in Modelica a guard that is true at the start never becomes true, so its exit would never be taken.
+#[derive(Clone, Debug, Default)]
+pub struct Begun {
+    /// States that jump.
+    pub states: BTreeMap<usize, f64>,
+    /// Modes, and what is remembered.
+    pub memory: BTreeMap<usize, f64>,
+}
+
 /// The model of a project as a class of that name. What is wrong is in the project's diagnostics.
-pub fn written(project: &mut Project, name: &str) -> Option<Written> {
+pub fn written(project: &mut Project, name: &str, begun: &Begun) -> Option<Written> {
     let settings = project.set().into_iter().collect();
     let headers = hyde_study::headers(&project.records);
     let request = Request {
@@ -54,7 +65,7 @@ pub fn written(project: &mut Project, name: &str) -> Option<Written> {
         project.diagnostics.push(diagnostic);
         return None;
     }
-    let found = class(&dae, name);
+    let found = class(&dae, name, begun);
     if found.is_none() {
         project.diagnostics.push(refusals::too_long());
     }
@@ -75,14 +86,14 @@ fn inexpressible(dae: &Dae) -> Option<Diagnostic> {
     Some(refusals::edge_in_condition(edge.origin.span))
 }
 
-fn class(dae: &Dae, name: &str) -> Option<Written> {
+fn class(dae: &Dae, name: &str, begun: &Begun) -> Option<Written> {
     let names = Names::of(dae);
     let mut text = format!(
         "model {name} \"{} after index reduction, written by Hyde {}; values in SI units\"\n",
         dae.name,
         env!("CARGO_PKG_VERSION")
     );
-    declarations::write(&mut text, dae, &names);
+    declarations::write(&mut text, dae, &names, begun);
     initial(&mut text, dae, &names);
     text.push_str("equation\n");
     for definition in dae.definitions.iter().filter(|own| !own.slope) {
@@ -124,20 +135,22 @@ fn class(dae: &Dae, name: &str) -> Option<Written> {
     })
 }
 
-/// Conditions at the start that are equations.
+/// Conditions at the start that are equations, and the parameters that follow from those which they determine.
 fn initial(text: &mut String, dae: &Dae, names: &Names<'_>) {
-    let mut first = true;
+    let mut lines = String::new();
     for condition in &dae.initial {
         let InitialCondition::Equation { range, value, .. } = condition else {
             continue;
         };
-        if first {
-            text.push_str("initial equation\n");
-            first = false;
-        }
         for counter in range.iter() {
-            let _ = writeln!(text, "  0 = {};", names.number(*value, counter));
+            let _ = writeln!(lines, "  0 = {};", names.number(*value, counter));
         }
+    }
+    for (name, value) in declarations::found_with_others(dae, names) {
+        let _ = writeln!(lines, "  {name} = {value};");
+    }
+    if !lines.is_empty() {
+        let _ = write!(text, "initial equation\n{lines}");
     }
 }
 

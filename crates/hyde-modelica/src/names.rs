@@ -1,14 +1,16 @@
 //! [`Names`]: identifiers of everything that has a value. Variables that were eliminated have none.
 
 use hyde_ir::dae::{Dae, Space};
-use hyde_ir::{Id as _, ParamId, VarId, VariableKind};
-use std::collections::BTreeMap;
+use hyde_ir::{Expr, ExprId, Id as _, ParamId, VarId, VariableKind};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The identifiers of a model.
 pub(crate) struct Names<'d> {
     pub(crate) dae: &'d Dae,
     /// The variable and element at each position of the memory.
     memory: BTreeMap<usize, String>,
+    /// The variables whose definitions contain held values.
+    pub(crate) made_of_held: BTreeSet<VarId>,
 }
 
 impl<'d> Names<'d> {
@@ -28,7 +30,11 @@ impl<'d> Names<'d> {
         for automaton in dae.automata.iter() {
             memory.insert(automaton.place, mode_name(&automaton.name));
         }
-        Self { dae, memory }
+        Self {
+            dae,
+            memory,
+            made_of_held: made_of_held(dae),
+        }
     }
 
     /// An element of a variable.
@@ -61,6 +67,39 @@ impl<'d> Names<'d> {
     /// What a position of the solver's vector is called.
     pub(crate) fn unknown(&self, position: usize) -> String {
         quoted(&self.dae.unknown_name(position))
+    }
+}
+
+/// The variables whose definitions contain held values, themselves or by other definitions.
+fn made_of_held(dae: &Dae) -> BTreeSet<VarId> {
+    let is_held = |var: VarId| {
+        let place = dae.place(var).filter(|own| own.space == Space::Memory);
+        place.is_some_and(|own| {
+            let end = own.base + dae.variables[var].size();
+            let mut holds = dae.holds.iter();
+            holds.any(|hold| hold.target < end && own.base < hold.target + hold.len)
+        })
+    };
+    let mut found = BTreeSet::new();
+    if dae.holds.is_empty() {
+        return found;
+    }
+    loop {
+        let before = found.len();
+        for definition in dae.definitions.iter().filter(|own| !own.slope) {
+            let reads = |id: ExprId| {
+                let Expr::Var(var, _) = dae.exprs[id] else {
+                    return false;
+                };
+                found.contains(&var) || is_held(var)
+            };
+            if dae.exprs.below(&[definition.value]).into_iter().any(reads) {
+                found.insert(definition.var);
+            }
+        }
+        if found.len() == before {
+            return found;
+        }
     }
 }
 

@@ -14,12 +14,7 @@ const LEAST_SHARE: f64 = 0.05;
 const WIDTH: usize = 54;
 
 /// The line that says which pole grows, first of all; none where none does.
-pub fn unstable(
-    program: &Program,
-    parameters: &[f64],
-    linear: &Linear,
-    poles: &Poles,
-) -> Option<String> {
+pub fn unstable(program: &Program, linear: &Linear, poles: &Poles) -> Option<String> {
     let all = poles.unstable();
     let first = all.first()?;
     let what = if first.oscillates() {
@@ -36,7 +31,7 @@ pub fn unstable(
         "UNSTABLE: {what} doubles every {} s",
         significant(first.doubling_s(), 3)
     );
-    let place = place(program, parameters, linear, (poles, first));
+    let place = place(program, linear, (poles, first));
     if !place.is_empty() {
         let _ = write!(text, "; {place}");
     }
@@ -52,13 +47,8 @@ pub fn unstable(
 }
 
 /// Where the energy of a pole is; where no energy is declared, the state that takes most part in it.
-fn place(
-    program: &Program,
-    parameters: &[f64],
-    linear: &Linear,
-    (poles, pole): (&Poles, &Pole),
-) -> String {
-    let shape = mode_shape(program, parameters, linear, (poles, pole));
+fn place(program: &Program, linear: &Linear, (poles, pole): (&Poles, &Pole)) -> String {
+    let shape = mode_shape(program, linear, (poles, pole));
     let shares = shape.as_ref().map_or_else(String::new, shares);
     if !shares.is_empty() {
         return shares;

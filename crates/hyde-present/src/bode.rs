@@ -133,8 +133,7 @@ fn of_experiment(asked: &Responses, took: Option<Duration>, several: bool) -> St
         _ => String::new(),
     };
     for (number, bode) in asked.bodes.iter().enumerate() {
-        let p = &asked.parameters;
-        if let Some(unstable) = assumed::unstable(program, p, &bode.linear, &bode.poles)
+        if let Some(unstable) = assumed::unstable(program, &bode.linear, &bode.poles)
             && !text.contains(&unstable)
         {
             text.insert_str(0, &unstable);

@@ -97,30 +97,39 @@ pub fn text(records: &[RecordErrors], calibration: &Calibration) -> String {
             .filter(move |record| record.holdout == held_out)
     };
     let where_ = if held_out { ", held out" } else { "" };
-    let table =
-        |out: &mut String, title: &str, of: &dyn Fn(&RecordErrors, usize) -> Option<Change>| {
-            let _ = writeln!(
-                out,
-                "\n  {:<32} {:>11} {:>11}   rel. to noise floor",
-                format!("{title}{where_}"),
-                "before",
-                "after"
-            );
-            for (number, channel) in measured.iter().enumerate() {
-                let Some(change) = over(shown(), |record| of(record, number)) else {
-                    continue;
-                };
-                let _ = writeln!(out, "{}", line(&channel.name, change, &channel.unit));
-            }
-        };
-    table(&mut out, "rms of innovations", &|record, number| {
-        Some(record.innovations(number, deviations))
+    let table = |out: &mut String, title: &str, of: &dyn Fn(usize) -> Option<Change>| {
+        let _ = writeln!(
+            out,
+            "\n  {:<32} {:>11} {:>11}   rel. to noise floor",
+            format!("{title}{where_}"),
+            "before",
+            "after"
+        );
+        for (number, channel) in measured.iter().enumerate() {
+            let Some(change) = of(number) else {
+                continue;
+            };
+            let _ = writeln!(out, "{}", line(&channel.name, change, &channel.unit));
+        }
+    };
+    table(&mut out, "rms of innovations", &|number| {
+        over(shown(), |record| {
+            Some(record.innovations(number, deviations))
+        })
     });
-    table(&mut out, "rms of 100 ms windows", &|record, number| {
-        Some(record.windows(number))
-    });
+    // A record may be too short for a window behind its `skip`, a channel may have no reading in one.
+    let windows = |number: usize| {
+        let known = shown().filter(|record| record.windows(number).after.is_finite());
+        over(known, |record| Some(record.windows(number)))
+    };
+    match (0..measured.len()).any(|number| windows(number).is_some()) {
+        true => table(&mut out, "rms of 100 ms windows", &windows),
+        false => out.push_str("\n  no compared record has a window of 100 ms\n"),
+    }
     match shown().find_map(RecordErrors::no_free_run) {
-        None => table(&mut out, "rms of the free run", &RecordErrors::free),
+        None => table(&mut out, "rms of the free run", &|number| {
+            over(shown(), |record| record.free(number))
+        }),
         Some(reason) => {
             let _ = writeln!(out, "\n  there is no free run: {reason}");
         }

@@ -48,6 +48,7 @@ fn json_of(seen: &Seen) -> Value {
                 "role": channel.shown.role.to_string(), "reference": channel.shown.reference, "why": channel.shown.why,
                 "min": s.range.0, "max": s.range.1, "step": s.step, "noise": s.noise,
                 "stuck": s.stuck.map(|held| json!({ "from_s": held.from_s, "to_s": held.to_s, "value": held.value })),
+                "saturated_below": s.saturated_below.map(|limit| json!({ "value": limit.value, "samples": limit.samples })),
                 "saturated": s.saturated.map(|limit| json!({ "value": limit.value, "samples": limit.samples })),
                 "wraps": s.wraps.map(|wrap| json!({ "period": wrap.period, "times": wrap.times })),
                 "spikes_s": s.spikes,

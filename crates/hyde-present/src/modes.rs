@@ -56,9 +56,8 @@ fn of_experiment(found: &Modes) -> Map<String, Value> {
 
 /// The line that says what grows.
 fn unstable(found: &Modes) -> Option<String> {
-    let prepared = &found.prepared;
-    let (program, p) = (&prepared.compiled.program, &prepared.parameters);
-    assumed::unstable(program, p, &found.linear, &found.poles)
+    let program = &found.prepared.compiled.program;
+    assumed::unstable(program, &found.linear, &found.poles)
 }
 
 /// About what it is linearised, with what is assumed.

@@ -14,8 +14,8 @@ use hyde_units::{counted, significant};
 #[must_use]
 pub fn about(found: &Found) -> String {
     let prepared = &found.prepared;
-    let (program, p) = (&prepared.compiled.program, &prepared.parameters);
-    let unstable = assumed::unstable(program, p, &found.linear, &found.poles);
+    let program = &prepared.compiled.program;
+    let unstable = assumed::unstable(program, &found.linear, &found.poles);
     unstable.unwrap_or_default()
         + &loop_told(program, &found.system, found.open)
         + &assumed::text(program, &found.linear, prepared.time)

@@ -287,6 +287,7 @@ pub fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "expectations": expectations,
         "parameters": parameters,
         "notes": notes,
+        "diagnostics": hyde_study::render::to_json(&project.diagnostics, &project.sources),
     });
     if let Some(incomplete) = &run.incomplete {
         summary["ok"] = json!(false);

@@ -176,7 +176,7 @@ pub struct PartialEntry {
 /// is compiled in no time and has long tables.
 #[derive(Clone, Default)]
 pub struct Derivatives {
-    entries: OnceLock<[Vec<PartialEntry>; 6]>,
+    entries: OnceLock<[Vec<PartialEntry>; 7]>,
     jacobian: OnceLock<Jacobian>,
 }
 
@@ -228,6 +228,8 @@ pub struct Program {
     pub delays: Vec<Delay>,
     /// Number of sines of the time whose rates are known ([`crate::Constant::Turning`]).
     pub turning: usize,
+    /// Number of sines in root functions ([`Function::Angles`]).
+    pub angles: usize,
     /// Whether the residual has an exponential of unknowns that grows.
     pub exponential: bool,
     /// Whether the residual reads the time, a record column or a delayed value.
@@ -299,6 +301,7 @@ impl Program {
                 })
                 .sum(),
             Function::Delayed => self.delays.len(),
+            Function::Angles => self.angles,
         }
     }
 
@@ -370,9 +373,8 @@ impl Program {
             .parameters
             .iter()
             .find(|parameter| parameter.name == array)?;
-        (1..=found.len)
-            .contains(&number)
-            .then_some((found, number - 1))
+        let element = number.checked_sub(1)?;
+        (element < found.len).then_some((found, element))
     }
 
     /// The parameter that has an element at a position of the parameter vector, and the name of the element.

@@ -145,7 +145,7 @@ impl Model {
         let keep = keep.map(|names| self.outputs(&names)).transpose()?;
         let mut set = self.set.clone();
         for (name, value) in numbers {
-            self.may_be_set(&Setting::of(name.clone(), value, None))?;
+            self.may_be_set(&Setting::in_si(name.clone(), value))?;
             set.push((name, value));
         }
         for text in &texts {
@@ -154,7 +154,12 @@ impl Model {
             set.push((setting.path, setting.value));
         }
         for (name, value) in [("stop", stop), ("rtol", rtol), ("atol", atol)] {
-            if value.is_some_and(|value| value.is_nan() || value <= 0.0) {
+            // A record may begin below 0, and the run with it.
+            let least = match name {
+                "stop" if !self.tables.is_empty() => f64::NEG_INFINITY,
+                _ => 0.0,
+            };
+            if value.is_some_and(|value| value.is_nan() || value <= least) {
                 return Err(refusal::asked(&format!("`{name}` must be positive")));
             }
         }
@@ -229,7 +234,7 @@ impl Model {
     /// Refuses what a compiled model cannot take.
     fn may_be_set(&self, setting: &Setting) -> PyResult<()> {
         let Some((parameter, _)) = self.compiled.program.parameter(&setting.path) else {
-            return Ok(());
+            return self.may_become_parameter(&setting.path);
         };
         if parameter.structural {
             let reason = format!(
@@ -239,11 +244,17 @@ impl Model {
             );
             return Err(refusal::asked(&reason));
         }
-        match setting.unit {
-            Some(_) => {
-                settings::check(setting, parameter).map_err(|reason| refusal::asked(&reason))
-            }
+        settings::check(setting, parameter).map_err(|reason| refusal::asked(&reason))
+    }
+
+    /// Refuses a start value: it becomes a parameter only where the model is compiled with it.
+    fn may_become_parameter(&self, path: &str) -> PyResult<()> {
+        let of = path.strip_suffix(".start");
+        match of.and_then(|variable| self.compiled.program.output(variable)) {
             None => Ok(()),
+            Some(_) => Err(refusal::asked(&format!(
+                "`{path}` becomes a parameter when the model is loaded with it: `hyde.load(FILE, set={{\"{path}\": VALUE}})`"
+            ))),
         }
     }
 

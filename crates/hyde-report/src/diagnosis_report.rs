@@ -77,12 +77,19 @@ pub struct ChannelChange {
     pub unit: String,
     /// Root mean square of innovations.
     pub innovations: ErrorChange,
-    /// Root mean square over open-loop windows.
+    /// Root mean square over open-loop windows; NaN where there are none.
     pub windows: ErrorChange,
     /// Root mean square of the free run, if there is one.
     pub free: Option<ErrorChange>,
     /// Root mean square in each window, before and after.
     pub over_time: (Vec<f64>, Vec<f64>),
+}
+
+impl ChannelChange {
+    /// The windows, where there are any.
+    fn windows_known(&self) -> Option<ErrorChange> {
+        Some(self.windows).filter(|windows| windows.after.is_finite())
+    }
 }
 
 /// An error before and after, and what would be left if the model were the axis; SI.
@@ -258,7 +265,7 @@ impl DiagnosisReport {
             for channel in &record.channels {
                 let measures = [
                     ("innovations", Some(channel.innovations)),
-                    ("100 ms windows", Some(channel.windows)),
+                    ("100 ms windows", channel.windows_known()),
                     ("free run", channel.free),
                 ];
                 for (name, change) in measures {
@@ -306,7 +313,7 @@ impl DiagnosisReport {
         };
         [
             measure("innovations", &|channel| Some(channel.innovations)),
-            measure("windows of 100 ms", &|channel| Some(channel.windows)),
+            measure("windows of 100 ms", &ChannelChange::windows_known),
             measure("free run", &|channel| channel.free),
         ]
         .into_iter()

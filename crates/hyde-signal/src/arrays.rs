@@ -11,7 +11,7 @@ mod numpy;
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::Heading;
 use crate::layout::Kind;
-use crate::{Fault, Layout, Note, Table, TableError, TimeError};
+use crate::{Fault, Layout, Note, Table, TableError, TimeError, contradicted};
 use std::fmt;
 
 /// An array of numbers, its last axis fastest.
@@ -70,7 +70,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         true => mat::read(bytes)?,
         false => numpy::read(bytes)?,
     };
-    let (columns, notes) = columns(content, layout.run)?;
+    let (columns, mut notes) = columns(content, layout.run)?;
     let raw = columns.into_iter().map(|(name, values)| Raw {
         cells: cells(&name, values),
         heading: Heading::plain(&name),
@@ -78,6 +78,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     let raw: Vec<Raw> = raw.collect();
     crate::declared::check(raw.iter(), &layout.columns).map_err(ReadError::Time)?;
     let place = |sample: usize| format!("sample {}", sample + 1);
+    notes.extend(contradicted::noted(&raw, layout.every_s, &place));
     let table = assemble(raw, layout, notes, &place);
     let table = table.map(|table| table.laid_out(Kind::Arrays));
     table.map_err(|error| match error {

@@ -1,6 +1,6 @@
 //! From the columns of a file to a table: which of them is the time, and which cannot be used.
 
-use crate::calendar::{self, Origin};
+use crate::calendar::Origin;
 use crate::heading::{Heading, Place};
 use crate::instants;
 use crate::layout::Layout;
@@ -251,40 +251,4 @@ fn in_parentheses(raw: &[Raw]) -> Option<Note> {
             list.join(", ")
         ))
     })
-}
-
-/// Makes the times of tables count from one instant, where their clocks can be compared; where not, each of them says so.
-pub fn align(tables: &mut [(&str, &mut Table)]) {
-    let origins: Vec<Origin> = tables
-        .iter()
-        .filter_map(|(_, table)| table.origin().cloned())
-        .collect();
-    let Some(first) = origins
-        .iter()
-        .min_by_key(|origin| origin.nanoseconds)
-        .cloned()
-    else {
-        return;
-    };
-    if tables.len() > 1
-        && (origins.len() < tables.len() || origins.iter().any(|o| o.since != first.since))
-    {
-        let names: Vec<String> = tables.iter().map(|(name, _)| format!("`{name}`")).collect();
-        let note = Note::new(format!(
-            "the clocks of the records {} cannot be compared: each counts as it stands, or from its own first row",
-            names.join(", ")
-        ));
-        for (_, table) in tables {
-            table.tell(note.clone());
-        }
-        return;
-    }
-    for (_, table) in tables {
-        let later = table
-            .origin()
-            .map_or(0, |origin| origin.nanoseconds - first.nanoseconds);
-        if later > 0 {
-            table.begin_later(calendar::seconds(later), &first);
-        }
-    }
 }

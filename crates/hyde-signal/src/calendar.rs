@@ -1,5 +1,9 @@
 //! Stamps that count from elsewhere: dates, times of day, and numbers of digits that doubles do not hold.
 
+mod zone;
+
+pub use zone::Zone;
+
 use crate::texts::Texts;
 use chrono::{DateTime, NaiveDate};
 
@@ -8,38 +12,60 @@ use chrono::{DateTime, NaiveDate};
 pub struct Origin {
     /// Since what it counts.
     pub since: Since,
-    /// What it showed, in ns since then.
+    /// What it showed, in ns since then; in UTC where its stamps say their offset.
     pub nanoseconds: i128,
     /// The same as text.
     pub text: String,
+    /// The zone of its first stamp; no name where it counts in numbers.
+    pub zone: Zone,
 }
 
 /// Since what a clock counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Since {
     /// 1970 or whatever it began with, in numbers.
     Number,
     /// The calendar, in dates.
     Date,
+    /// A day that its stamps name so that day and month cannot be told apart.
+    Day(String),
     /// Midnight.
     Midnight,
+}
+
+impl Origin {
+    /// The same, whose stamps are times of a zone that they do not name.
+    pub(crate) fn in_zone(self, zone: &Zone) -> Self {
+        let utc = self.nanoseconds - zone.nanoseconds();
+        let nanoseconds = match self.since {
+            Since::Number => self.nanoseconds,
+            Since::Midnight => utc.rem_euclid(DAY),
+            Since::Date | Since::Day(_) => utc,
+        };
+        Self {
+            nanoseconds,
+            zone: zone.clone(),
+            ..self
+        }
+    }
 }
 
 const NANOSECONDS: i128 = 1_000_000_000;
 const DAY: i128 = 86_400 * NANOSECONDS;
 
-/// Dates or times of day as seconds from the first one, with what that one was; else the first cell that is neither.
+/// Dates or times of day as seconds from the first one, with what that one was; else the first cell that is neither. Stamps
+/// with an offset from UTC are the instants that they mean, wherever the offset changes.
 pub(crate) fn of_texts(cells: &Texts) -> Result<(Vec<f64>, Origin), usize> {
     let mut stamps = Vec::with_capacity(cells.len());
     let first = cells.first().and_then(Stamp::of).ok_or(0_usize)?;
     let mut days = 0;
     for (row, cell) in cells.iter().enumerate() {
-        let stamp = Stamp::of(cell).filter(|stamp| stamp.zone == first.zone);
+        let stamp = Stamp::of(cell).filter(|stamp| stamp.zone.is_like(&first.zone));
         let stamp = stamp.ok_or(row)?;
         let day = match (first.date, stamp.date) {
             (None, None) => {
                 // A clock that goes back by half a day and more has passed midnight.
-                let at = days * DAY + stamp.of_day;
+                let at = days * DAY + stamp.since_midnight();
                 let passed = stamps.last().is_some_and(|before| before - at > DAY / 2);
                 days += i128::from(passed);
                 days
@@ -51,17 +77,21 @@ pub(crate) fn of_texts(cells: &Texts) -> Result<(Vec<f64>, Origin), usize> {
             }
             (Some(_), None) | (None, Some(_)) => return Err(row),
         };
-        stamps.push(day * DAY + stamp.of_day);
+        stamps.push(day * DAY + stamp.since_midnight());
     }
-    let since = match first.date {
-        Some(_) => Since::Date,
-        None => Since::Midnight,
+    let (since, epoch) = match (first.date, first.date.and_then(day)) {
+        (None, _) => (Since::Midnight, 0),
+        (Some(_), Some(number)) => (Since::Date, i128::from(number)),
+        (Some(date), None) => (Since::Day(date.to_owned()), 0),
     };
-    let epoch = first.date.and_then(day).map_or(0, i128::from) * DAY;
     let origin = Origin {
+        nanoseconds: match since {
+            Since::Midnight => first.since_midnight().rem_euclid(DAY),
+            Since::Date | Since::Day(_) | Since::Number => epoch * DAY + first.since_midnight(),
+        },
         since,
-        nanoseconds: epoch + first.of_day,
         text: cells[0].trim().to_owned(),
+        zone: first.zone.clone(),
     };
     let seconds = stamps.iter().map(|at| seconds(at - stamps[0])).collect();
     Ok((seconds, origin))
@@ -76,14 +106,19 @@ pub(crate) fn seconds(nanoseconds: i128) -> f64 {
 }
 
 /// Date, time of day in ns, and zone.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Stamp<'a> {
     date: Option<&'a str>,
     of_day: i128,
-    zone: &'a str,
+    zone: Zone,
 }
 
 impl<'a> Stamp<'a> {
+    /// The ns since midnight of its date, in UTC where its offset is known.
+    fn since_midnight(&self) -> i128 {
+        self.of_day - self.zone.nanoseconds()
+    }
+
     /// `2024-03-05T14:07:01.25Z`, `05.03.2024 14:07:01,250`, `14:07:01.25`.
     fn of(cell: &'a str) -> Option<Self> {
         let cell = cell.trim();
@@ -125,7 +160,11 @@ impl<'a> Stamp<'a> {
         };
         let nanoseconds: i128 = format!("{:0<9.9}", fraction).parse().ok()?;
         let of_day = ((hours * 60 + minutes) * 60 + seconds) * NANOSECONDS + nanoseconds;
-        Some(Self { date, of_day, zone })
+        Some(Self {
+            date,
+            of_day,
+            zone: Zone::of(zone),
+        })
     }
 }
 
@@ -140,8 +179,11 @@ fn day(date: &str) -> Option<i32> {
     let formats = [
         "%Y-%m-%d", "%d.%m.%Y", "%Y/%m/%d", "%Y%m%d", "%d-%b-%Y", "%d %b %Y",
     ];
+    // Blanks between digits separate other things than day and month.
+    let blanks = date.contains(char::is_whitespace);
     let mut read = formats
         .iter()
+        .filter(|format| format.contains(' ') == blanks)
         .map(|format| NaiveDate::parse_from_str(date, format));
     Some(read.find_map(Result::ok)?.num_days_from_ce())
 }
@@ -181,11 +223,7 @@ pub(crate) fn of_doubles(values: &[f64], unit_s: f64) -> Option<(Vec<f64>, Origi
     let each = values.iter().map(|value| (value - first) * unit_s);
     #[allow(clippy::cast_possible_truncation, reason = "a number of ns")]
     let nanoseconds = (first * unit_s * 1e9) as i128;
-    let origin = Origin {
-        since: Since::Number,
-        nanoseconds,
-        text: shown(nanoseconds, &first.to_string()),
-    };
+    let origin = counted(nanoseconds, unit_s, &first.to_string());
     Some((each.collect(), origin))
 }
 
@@ -212,21 +250,51 @@ fn number(digits: i128, places: u32, unit_s: f64, text: &str) -> Origin {
         true => digits.saturating_mul(factor as i128),
         false => (digits as f64 * factor) as i128,
     };
-    Origin {
-        since: Since::Number,
-        nanoseconds,
-        text: shown(nanoseconds, text),
+    counted(nanoseconds, unit_s, text)
+}
+
+/// Days from the beginning of our calendar to that of a spreadsheet, 1899-12-30.
+const SPREADSHEET: i128 = 693_594;
+
+/// What a clock showed that counts in units of that many s: since a time of its own or 1970; in days as a spreadsheet, from 2000
+/// to 2100, since 1899-12-30.
+fn counted(nanoseconds: i128, unit_s: f64, text: &str) -> Origin {
+    let is_date =
+        (unit_s - 86_400.0).abs() < 1e-6 && (36_526 * DAY..73_050 * DAY).contains(&nanoseconds);
+    let zone = Zone::Named(String::new());
+    match is_date {
+        true => Origin {
+            since: Since::Date,
+            nanoseconds: nanoseconds + SPREADSHEET * DAY,
+            text: match date_of(nanoseconds - 25_569 * DAY) {
+                Some(date) => format!(
+                    "{text}, the date {} of a spreadsheet",
+                    date.format("%Y-%m-%d %H:%M:%S%.3f")
+                ),
+                None => text.to_owned(),
+            },
+            zone,
+        },
+        false => Origin {
+            since: Since::Number,
+            nanoseconds,
+            text: shown(nanoseconds, text),
+            zone,
+        },
     }
+}
+
+/// The date of a number of ns since 1970.
+fn date_of(nanoseconds: i128) -> Option<DateTime<chrono::Utc>> {
+    let nanoseconds = i64::try_from(nanoseconds).ok();
+    nanoseconds.map(DateTime::from_timestamp_nanos)
 }
 
 /// A number of ns as the date that it means if it is Unix time, else as it was written.
 fn shown(nanoseconds: i128, text: &str) -> String {
     // From 2001 to 2100.
     let is_unix = (NANOSECONDS * 1_000_000_000..NANOSECONDS * 4_102_444_800).contains(&nanoseconds);
-    let date = i64::try_from(nanoseconds)
-        .ok()
-        .map(DateTime::from_timestamp_nanos);
-    match date.filter(|_| is_unix) {
+    match date_of(nanoseconds).filter(|_| is_unix) {
         Some(date) => format!(
             "{text}, in Unix time {}",
             date.format("%Y-%m-%d %H:%M:%S%.f UTC")
@@ -286,8 +354,27 @@ mod tests {
         // Day and month, or month and day: not said.
         let cells = texts(&["03/05/2024 23:59:59", "03/06/2024 00:00:00"]);
         assert_eq!(of_texts(&cells).unwrap_err(), 1);
-        let cells = texts(&["2024-03-05 14:07:01+01:00", "2024-03-05 14:07:02+02:00"]);
+        assert!(!is_stamp("0001\t111"));
+        // One stamp with an offset and one without: not said.
+        let cells = texts(&["2024-03-05 14:07:01+01:00", "2024-03-05 14:07:02"]);
         assert_eq!(of_texts(&cells).unwrap_err(), 1);
+    }
+
+    #[test]
+    fn stamps_with_offsets_are_instants() {
+        // Summer time ends: 02:59:59.9 in it is 0.3 s before 02:00:00.2 in winter time.
+        let cells = [
+            "2023-10-29T02:59:59.900+02:00",
+            "2023-10-29T02:00:00.200+01:00",
+        ];
+        let (seconds, origin) = of_texts(&texts(&cells)).unwrap();
+        assert_eq!(seconds, [0.0, 0.3]);
+        let since = |cell| of_texts(&texts(&[cell])).unwrap().1.nanoseconds;
+        assert_eq!(origin.nanoseconds, since("2023-10-29T00:59:59.900Z"));
+        assert_eq!(since("04:04:05+01:00"), since("03:04:05Z"));
+        assert_eq!(since("00:30:00+01:00"), since("23:30:00Z"));
+        let (_, origin) = of_texts(&texts(&["03/05/2024 14:07:01"])).unwrap();
+        assert_eq!(origin.since, Since::Day("03/05/2024".to_owned()));
     }
 
     #[test]
@@ -306,5 +393,22 @@ mod tests {
         let (seconds, _) = of_integers(&[1_709_647_621_250, 1_709_647_621_252], 1e-3).unwrap();
         assert_eq!(seconds, [0.0, 0.002]);
         assert!(of_digits(&texts(&["1e9", "2e9"]), 1.0).is_none());
+    }
+
+    #[test]
+    fn days_of_a_spreadsheet_are_dates() {
+        let cells = texts(&["45000.25", "45000.75"]);
+        let (seconds, origin) = of_digits(&cells, 86_400.0).unwrap();
+        assert!((seconds[1] - 43_200.0).abs() < 1e-6, "{seconds:?}");
+        assert!(
+            origin.text.contains("2023-03-15 06:00:00"),
+            "{}",
+            origin.text
+        );
+        let (_, same) = of_texts(&texts(&["2023-03-15 06:00:00"])).unwrap();
+        assert_eq!(
+            (origin.since, origin.nanoseconds),
+            (same.since, same.nanoseconds)
+        );
     }
 }

@@ -30,5 +30,7 @@ mod write;
 
 pub use error::ReadError;
 pub use frame::read_frame;
+pub(crate) use number::number_with;
 pub use read::read;
+pub(crate) use read::read_sheet;
 pub use write::{write, write_to};

@@ -61,7 +61,7 @@ pub(crate) fn check<'a>(
         .iter()
         .find(|declared| !columns.clone().any(|column| means(declared, column)));
     match missing {
-        Some(declared) => Err(TimeError::NoColumn(
+        Some(declared) => Err(TimeError::NoOther(
             declared.name.clone(),
             columns.map(|column| column.heading.name.clone()).collect(),
         )),

@@ -49,9 +49,10 @@ impl Heading {
     /// Brackets that close the cell hold a unit, except an index that stands at the name: `x[1]` is an element. What is in
     /// parentheses belongs to the name unless it is a unit.
     pub(crate) fn of(cell: &str) -> Self {
-        let cell = cell.trim();
+        let written = cell.trim();
+        let cell = unquoted(written);
         let heading = |name: &str, unit, place| Self {
-            written: cell.to_owned(),
+            written: written.to_owned(),
             name: name.trim_end().to_owned(),
             unit,
             place,
@@ -130,6 +131,15 @@ impl Heading {
     pub(crate) fn known_unit(&self) -> Option<&NamedUnit> {
         self.unit.as_ref()?.as_ref().ok()
     }
+}
+
+/// A cell without the single quotes that some controls write round it.
+fn unquoted(cell: &str) -> &str {
+    let inside = cell.strip_prefix('\'').and_then(|c| c.strip_suffix('\''));
+    let inside = inside
+        .filter(|inside| !inside.contains('\''))
+        .map(str::trim);
+    inside.filter(|inside| !inside.is_empty()).unwrap_or(cell)
 }
 
 /// The unit in a cell of a row of units, with or without brackets round it; nothing where the cell is empty.
@@ -305,6 +315,8 @@ mod tests {
         assert_eq!(split("qg_m"), bare("qg_m"));
         assert_eq!(split("Reference Velocity"), bare("Reference Velocity"));
         assert_eq!(split("Time (ms)"), with("Time", "ms"));
+        assert_eq!(split("'POSF(mm)'"), with("POSF", "mm"));
+        assert_eq!(split("v (mm s^-1)"), with("v", "mm.s^-1"));
         assert_eq!(split("Time [msec]"), with("Time", "ms"));
         assert_eq!(split("Channel 1 (V)"), with("Channel 1", "V"));
         assert_eq!(split("speed (raw)"), bare("speed (raw)"));

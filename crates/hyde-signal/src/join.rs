@@ -76,7 +76,7 @@ pub fn join(files: Vec<Named>) -> Result<Table, JoinError> {
 
 /// Makes all files count from one instant.
 fn on_one_clock(mut files: Vec<Named>) -> Result<Vec<Named>, JoinError> {
-    let since = |table: &Table| table.origin().map(|origin| origin.since);
+    let since = |table: &Table| table.origin().map(|origin| origin.since.clone());
     for pair in files.windows(2) {
         let [(a, first), (b, second)] = pair else {
             continue;
@@ -93,7 +93,7 @@ fn on_one_clock(mut files: Vec<Named>) -> Result<Vec<Named>, JoinError> {
     Ok(files)
 }
 
-/// Whether two files have the same channels, part by part, but for those that one of them cannot use as a whole.
+/// Whether two files have the same channels in whatever order, part by part, but for those that one of them cannot use as a whole.
 fn alike(a: &Table, b: &Table) -> bool {
     let lacks = |name: &str| {
         let mut lacking = a.unusable().iter().chain(b.unusable());
@@ -103,7 +103,9 @@ fn alike(a: &Table, b: &Table) -> bool {
         let of = |part: &Table| {
             let names = part.channels().map(Column::name);
             let names = names.filter(|name| !lacks(name));
-            names.map(str::to_owned).collect()
+            let mut names: Vec<String> = names.map(str::to_owned).collect();
+            names.sort();
+            names
         };
         table.parts().map(of).collect()
     };
@@ -263,6 +265,22 @@ mod tests {
             notes.contains(&"`log_10.csv` continues `log_2.csv` after 0.3 s".to_owned()),
             "{notes:?}"
         );
+    }
+
+    #[test]
+    fn parts_may_have_their_columns_in_another_order() {
+        let whole = join(named(&[
+            ("w_1.csv", "t[s],x[mm],v[mm/s]\n0,1,10\n0.1,2,20\n"),
+            (
+                "w_2.csv",
+                "Time[s],v[mm/s],x[m]\n0.2,30,0.003\n0.3,40,0.004\n",
+            ),
+        ]))
+        .unwrap();
+        let column = |name: &str| whole.column(name).unwrap().in_unit().into_owned();
+        assert_eq!(whole.time(), [0.0, 0.1, 0.2, 0.3]);
+        assert_eq!(column("x"), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(column("v"), [10.0, 20.0, 30.0, 40.0]);
     }
 
     #[test]

@@ -31,9 +31,11 @@ pub mod statistics;
 pub mod workbook;
 pub mod wrap;
 
+mod align;
 mod assemble;
 mod calendar;
 mod column;
+mod contradicted;
 mod decimal;
 mod declared;
 mod foreign;
@@ -52,8 +54,9 @@ mod texts;
 mod time_error;
 mod unpack;
 
-pub use assemble::{Fault, Unusable, align};
-pub use calendar::{Origin, Since};
+pub use align::align;
+pub use assemble::{Fault, Unusable};
+pub use calendar::{Origin, Since, Zone};
 pub use column::{Column, UnitConflict, Values as WrittenValues, Written, in_unit};
 pub use foreign::Foreign;
 pub use frame::{Field, Frame, Kind, Values};

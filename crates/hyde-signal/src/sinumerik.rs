@@ -7,7 +7,7 @@ mod base85;
 
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::{Heading, Place};
-use crate::{Layout, Note, Table, TableError, TimeError};
+use crate::{Layout, Note, Table, TableError, TimeError, contradicted};
 use hyde_units::parse_spelled;
 use roxmltree::{Document, Node};
 use std::fmt;
@@ -60,11 +60,14 @@ pub(crate) fn read(text: &str, layout: &Layout) -> Result<Table, ReadError> {
     let mut tables = Vec::new();
     for group in groups {
         let place = |row: usize| format!("sample {}", row + 1);
+        let own = contradicted::noted(&group, layout.every_s, &place);
         tables.push(
-            assemble(group, layout, Vec::new(), &place).map_err(|error| match error {
-                AssembleError::Time(error) => ReadError::Time(error),
-                AssembleError::Table(error) => ReadError::Table(error),
-            })?,
+            assemble(group, layout, own.into_iter().collect(), &place).map_err(
+                |error| match error {
+                    AssembleError::Time(error) => ReadError::Time(error),
+                    AssembleError::Table(error) => ReadError::Table(error),
+                },
+            )?,
         );
     }
     Table::of_parts(tables, notes).ok_or(ReadError::Empty)

@@ -177,6 +177,11 @@ impl Table {
         self.notes.push(note);
     }
 
+    /// Sets what the clock of the file showed where the time of the table is 0.
+    pub(crate) fn count_from(&mut self, origin: Origin) {
+        self.origin = Some(origin);
+    }
+
     /// Counts the time from an instant `later_s` before, where the clock showed `origin`.
     pub(crate) fn begin_later(&mut self, later_s: f64, origin: &Origin) {
         self.origin = Some(origin.clone());

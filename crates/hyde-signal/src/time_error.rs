@@ -8,6 +8,8 @@ use std::fmt;
 pub enum TimeError {
     /// The declared column is not there: its name, and those that are.
     NoColumn(String, Vec<String>),
+    /// Another declared column is not there: its name, and those that are.
+    NoOther(String, Vec<String>),
     /// The column has a unit of something else.
     OtherUnit {
         /// Its name.
@@ -109,7 +111,7 @@ impl TimeError {
             ),
         };
         match self {
-            Self::NoColumn(_, names) => {
+            Self::NoColumn(_, names) | Self::NoOther(_, names) => {
                 let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
                 format!("its columns are {}", list.join(", "))
             }
@@ -129,6 +131,9 @@ impl TimeError {
                 format!("say the unit of the time: `record {record}(time = {name:?} in [ms])`")
             }
             Self::Doubtful(fault) => fault.repair.clone(),
+            Self::NoTime { text, .. } if has_comma(text) => format!(
+                "say the decimal sign, `record {record}(decimal = \",\")`, or write numbers with a point, as `0.5`"
+            ),
             Self::NoTime { instead, .. } => {
                 let other = instead.as_ref().map_or_else(String::new, |candidate| {
                     format!(
@@ -144,16 +149,25 @@ impl TimeError {
                 "cut the file there into one file per run, and give them one by one: `--record {record}=PATH`"
             ),
             Self::RunsBack { anew: false, .. } => {
-                format!("remove the rows that are out of order, or write {every}")
+                format!(
+                    "sort the rows, or remove those that are out of order. Only if all rows were sampled evenly in the order of the file: \
+                     `record {record} every 1 [ms]`, which does not read the time and puts each row one period after the row before it"
+                )
             }
         }
     }
+}
+
+/// Whether a text is a number but for its decimal comma.
+fn has_comma(text: &str) -> bool {
+    text.contains(',') && text.trim().replacen(',', ".", 1).parse::<f64>().is_ok()
 }
 
 impl fmt::Display for TimeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoColumn(name, _) => write!(f, "there is no column `{name}` for the time"),
+            Self::NoOther(name, _) => write!(f, "there is no column `{name}`"),
             Self::OtherUnit { name, unit, .. } => {
                 write!(f, "the column `{name} [{unit}]` is not a time")
             }

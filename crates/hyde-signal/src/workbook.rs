@@ -27,13 +27,13 @@ pub enum ReadError {
 
 /// Reads the sheet that the layout says, else the only one with cells.
 pub(crate) fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
-    let (name, text) = sheet(bytes, layout.sheet.as_deref())?;
+    let (name, text) = sheet(bytes, layout)?;
     let layout = Layout {
         separator: Some('\t'),
         decimal: Some('.'),
         ..layout.clone()
     };
-    let mut table = csv::read(text.as_bytes(), &layout).map_err(ReadError::Sheet)?;
+    let mut table = csv::read_sheet(&text, &layout).map_err(ReadError::Sheet)?;
     table.tell(Note::new(format!(
         "read from the sheet `{name}` of a workbook"
     )));
@@ -41,7 +41,8 @@ pub(crate) fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
 }
 
 /// The name of a sheet, and its cells as text.
-fn sheet(bytes: &[u8], asked: Option<&str>) -> Result<(String, String), ReadError> {
+fn sheet(bytes: &[u8], layout: &Layout) -> Result<(String, String), ReadError> {
+    let asked = layout.sheet.as_deref();
     let wrong = |error: calamine::Error| ReadError::Workbook(error.to_string());
     let mut book = calamine::open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(wrong)?;
     let names = book.sheet_names();
@@ -64,7 +65,7 @@ fn sheet(bytes: &[u8], asked: Option<&str>) -> Result<(String, String), ReadErro
         0 => Err(ReadError::Empty),
         1 => {
             let (name, range) = found.remove(0);
-            Ok((name, text(&range)))
+            Ok((name, text(&range, layout.decimal)))
         }
         _ => Err(ReadError::Which(
             found.into_iter().map(|(name, _)| name).collect(),
@@ -72,7 +73,8 @@ fn sheet(bytes: &[u8], asked: Option<&str>) -> Result<(String, String), ReadErro
     }
 }
 
-fn text(range: &Range<Data>) -> String {
+/// The cells as text; texts that are numbers with the declared decimal sign become such.
+fn text(range: &Range<Data>, decimal: Option<char>) -> String {
     let mut out = String::new();
     // Lines are those of the sheet: rows above the first cell are blank ones.
     let above = range.start().map_or(0, |(row, _)| row);
@@ -82,14 +84,14 @@ fn text(range: &Range<Data>) -> String {
             if number > 0 {
                 out.push('\t');
             }
-            push(&mut out, cell);
+            push(&mut out, cell, decimal);
         }
         out.push('\n');
     }
     out
 }
 
-fn push(out: &mut String, cell: &Data) {
+fn push(out: &mut String, cell: &Data, decimal: Option<char>) {
     // Writing to a string cannot fail.
     let _ = match cell {
         Data::Int(value) => write!(out, "{value}"),
@@ -99,7 +101,11 @@ fn push(out: &mut String, cell: &Data) {
         Data::DateTime(at) => write!(out, "{}", stamp(at)),
         Data::DateTimeIso(text) | Data::DurationIso(text) | Data::String(text) => {
             let plain = text.replace(['\t', '\n', '\r', '"'], " ");
-            write!(out, "{}", plain.trim())
+            let plain = plain.trim();
+            match decimal.and_then(|decimal| csv::number_with(decimal, plain)) {
+                Some(number) => write!(out, "{number:?}"),
+                None => write!(out, "{plain}"),
+            }
         }
         Data::Error(error) => write!(out, "{error}"),
         Data::Empty => Ok(()),
@@ -147,5 +153,39 @@ impl std::fmt::Display for ReadError {
             Self::Empty => write!(f, "no sheet of the workbook has rows"),
             Self::Sheet(error) => error.fmt(f),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_of_numbers_have_the_declared_decimal_sign() {
+        let written = |cell: &Data, decimal| {
+            let mut out = String::new();
+            push(&mut out, cell, decimal);
+            out
+        };
+        let text = |text: &str| Data::String(text.to_owned());
+        assert_eq!(written(&text("0,5"), Some(',')), "0.5");
+        assert_eq!(written(&text("1.234,5"), Some(',')), "1234.5");
+        assert_eq!(written(&text("0,5"), None), "0,5");
+        assert_eq!(written(&text("x [mm]"), Some(',')), "x [mm]");
+        assert_eq!(written(&Data::Float(0.5), Some(',')), "0.5");
+        // Without a declaration `1,234` may be one and a part.
+        let layout = Layout {
+            separator: Some('\t'),
+            decimal: Some('.'),
+            ..Layout::default()
+        };
+        let table = csv::read_sheet("t [s]\tx\ty\n0\t1,234\t1\n1\t1,235\t1\n", &layout).unwrap();
+        assert_eq!(table.unusable()[0].name, "x");
+        let error = csv::read_sheet("t [s]\tx\n0,0\t1\n0,5\t1\n", &layout).unwrap_err();
+        assert!(
+            error
+                .repair("log")
+                .contains("`record log(decimal = \",\")`")
+        );
     }
 }

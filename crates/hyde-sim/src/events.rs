@@ -25,7 +25,7 @@ use crate::consistent::Consistent;
 use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::Moment;
-use crate::results::{Event, EventKind};
+use crate::results::{Contradiction, Event, EventKind, MOST_CONTRADICTIONS};
 use crate::root_rates::root_rates;
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
@@ -49,6 +49,7 @@ pub(crate) struct Instant<'s, 'a> {
     /// Conditions as they were, to tell which become true.
     pub(crate) conditions: &'s mut Vec<bool>,
     pub(crate) log: &'s mut Vec<Event>,
+    pub(crate) contradictions: &'s mut Vec<Contradiction>,
     /// Derivatives by parameters, which go along with the instant.
     pub(crate) sensitivities: Option<&'s mut Sensitivities>,
     /// The relations whose crossing this instant was located at.
@@ -360,6 +361,7 @@ impl Instant<'_, '_> {
         let slopes = self.slopes_of_assignments();
         Program::turn(&mut self.state.z, flipped);
         let mut entered: Vec<(usize, usize, bool)> = Vec::new();
+        self.note_contradictions(fired, &values);
         for &number in fired {
             let reaction = &program.reactions[number];
             causes.push(reaction.text.clone());
@@ -398,6 +400,38 @@ impl Instant<'_, '_> {
         }
         self.let_go(fired, &entered)?;
         self.pin(&entered)
+    }
+
+    /// Notes where reactions that fire together give a variable different values, and where two `when` give it one: the second
+    /// does not add to what the first one does.
+    #[cold]
+    fn note_contradictions(&mut self, fired: &[usize], values: &[f64]) {
+        let program = self.state.program;
+        let mut given: Vec<(usize, usize)> = Vec::new();
+        for &number in fired {
+            for index in program.reactions[number].assignments.clone() {
+                let target = program.assignments[index].target;
+                let when =
+                    |by: usize| matches!(program.reactions[by].kind, ReactionKind::When { .. });
+                let mut before = given.iter();
+                let other = before.find(|(other, by)| {
+                    *by != number
+                        && program.assignments[*other].target == target
+                        && (when(*by) && when(number)
+                            || values[*other].to_bits() != values[index].to_bits())
+                });
+                if let Some(&(other, by)) = other
+                    && self.contradictions.len() < MOST_CONTRADICTIONS
+                {
+                    self.contradictions.push(Contradiction {
+                        t: self.now.t,
+                        causes: [by, number].map(|by| program.reactions[by].text.clone()),
+                        values: [values[other], values[index]],
+                    });
+                }
+                given.push((index, number));
+            }
+        }
     }
 
     /// The derivatives by parameters of what events assign and of the values of pins, if they are asked for.

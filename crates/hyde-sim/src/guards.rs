@@ -2,8 +2,8 @@
 //!
 //! After each step the root functions are evaluated at its end. Where they are arithmetic of the unknowns and the ends of
 //! the last steps show that they bend too little to reach zero between, that is all. Else they are evaluated at a few
-//! Chebyshev points of the step's interpolant as well, and in between where they bend enough to reach zero; a change of
-//! sign between two of them brackets a crossing, which is located on the interpolant. Where consistent values do not show
+//! Chebyshev points of the step's interpolant as well, and in between where they bend enough to reach zero, or where a sine in
+//! them turns too far for that to be seen; a change of sign between two of them brackets a crossing, which is located on the interpolant. Where consistent values do not show
 //! it there, or where the step may have gone over a kink of a record, they are looked at over the whole step: the interpolant
 //! of a force bends there to a crossing that there is not, or that is earlier or later.
 
@@ -24,7 +24,10 @@ const BEFORE: usize = 3;
 /// How many times nearer to zero than it bends within a step a root function must not come.
 const CLEARANCE: f64 = 4.0;
 
-/// Values of the watched relations; of a few they are no allocation.
+/// Between two points that are looked at a sine in a root function turns by no more than this, rad.
+const TURN: f64 = 1.0;
+
+/// Values of the watched relations, and behind them the angles of the sines in root functions; of a few they are no allocation.
 type Roots = SmallVec<[f64; 8]>;
 
 /// The root functions at the last points before a step, as long as nothing happens; and room to evaluate them.
@@ -37,6 +40,7 @@ pub(crate) struct Trail {
     in_step: Vec<Watched>,
     then: Moment,
     roots: Vec<f64>,
+    angles: Vec<f64>,
 }
 
 impl Trail {
@@ -188,7 +192,9 @@ impl Search<'_> {
         };
         let mut pairs = self.watched.iter().zip(at_end);
         let [a, b, c] = before else { return false };
-        if !pairs.all(|(watched, root)| arithmetic(watched) && watched.holds(*root)) {
+        if !pairs.all(|(watched, root)| arithmetic(watched) && watched.holds(*root))
+            || self.turns(&c.1, at_end)
+        {
             return false;
         }
         let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
@@ -371,8 +377,20 @@ impl Search<'_> {
         }
     }
 
+    /// Whether sines in root functions turn so far between two points that these may come to zero and back unseen.
+    fn turns(&self, a: &[f64], b: &[f64]) -> bool {
+        let angles = a.iter().zip(b).skip(self.watched.len());
+        angles.into_iter().any(|(a, b)| (b - a).abs() > TURN)
+    }
+
     /// Whether a root function bends so much between neighbouring points that it may touch zero between them.
     fn may_reach_zero(&self, points: &[(f64, Roots)]) -> bool {
+        if points
+            .windows(2)
+            .any(|two| self.turns(&two[0].1, &two[1].1))
+        {
+            return true;
+        }
         points.windows(3).any(|three| {
             let [a, b, c] = three else { return false };
             let part = (b.0 - a.0) / (c.0 - a.0);
@@ -400,11 +418,9 @@ impl Search<'_> {
 
     /// The watched root functions at a time.
     fn values(&mut self, integrator: &mut Integrator<'_>, t: f64) -> Roots {
-        let roots = self.probe.roots(integrator, t);
-        self.watched
-            .iter()
-            .map(|watched| roots[watched.number])
-            .collect()
+        let (roots, angles) = self.probe.roots(integrator, t);
+        let watched = self.watched.iter().map(|watched| roots[watched.number]);
+        watched.chain(angles.iter().copied()).collect()
     }
 }
 
@@ -452,8 +468,14 @@ impl<'c> Probe<'c> {
         }
     }
 
-    fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> &[f64] {
-        let Trail { then, roots, .. } = &mut *self.room;
+    /// The root functions and the angles of their sines at a time.
+    fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> (&[f64], &[f64]) {
+        let Trail {
+            then,
+            roots,
+            angles,
+            ..
+        } = &mut *self.room;
         then.t = t;
         integrator.interpolate(then);
         let state = integrator.state_mut();
@@ -467,6 +489,10 @@ impl<'c> Probe<'c> {
             let weights = state.weights(then.at());
             roots.extend(weights.into_iter().flat_map(margins));
         }
-        roots
+        angles.resize(state.program.angles, 0.0);
+        if !angles.is_empty() {
+            state.evaluate(Function::Angles, then.at(), angles);
+        }
+        (roots, angles)
     }
 }

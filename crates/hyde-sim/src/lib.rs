@@ -63,12 +63,12 @@ mod zero;
 
 pub use failure::{Failure, FailureKind, Reading};
 pub use inputs::InputError;
-pub use known_start::{KnownStart, known_start};
+pub use known_start::{KnownStart, MovedAtStart, known_start, moved_at_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
 pub use reached::Reached;
 pub use results::{
-    Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, LeftIda, Reduced, Results,
-    Statistics, WhyLeft, Yielded,
+    Contradiction, Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, LeftIda,
+    Reduced, Results, Statistics, WhyLeft, Yielded,
 };
 pub use session::{Session, Variation};
 pub use setup::Setup;

@@ -56,6 +56,8 @@ pub struct OperatingPoint {
     pub u: Vec<f64>,
     /// The delayed values.
     pub delayed: Vec<f64>,
+    /// The parameters, with what initial equations found and what follows from it.
+    pub p: Vec<f64>,
     /// Modes that are not those of the run.
     pub modes: Vec<TakenMode>,
     /// The conditions of the surfaces that the run slides on there; it is taken on one side of each.
@@ -65,14 +67,14 @@ pub struct OperatingPoint {
 impl OperatingPoint {
     /// The model there.
     #[must_use]
-    pub fn at<'a>(&'a self, parameters: &'a [f64]) -> Point<'a> {
+    pub fn at(&self) -> Point<'_> {
         Point {
             t: self.t,
             y: &self.y,
             yp: &self.yp,
             z: &self.z,
             u: &self.u,
-            p: parameters,
+            p: &self.p,
         }
     }
 }

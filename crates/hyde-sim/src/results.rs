@@ -179,6 +179,20 @@ pub struct Gradient {
     pub end: Option<GradientEnd>,
 }
 
+/// Contradictions that are kept.
+pub(crate) const MOST_CONTRADICTIONS: usize = 3;
+
+/// Two reactions that gave one variable different values at an instant: the second one counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contradiction {
+    /// The instant, s.
+    pub t: f64,
+    /// The conditions of both, as written.
+    pub causes: [String; 2],
+    /// The values that they gave, SI.
+    pub values: [f64; 2],
+}
+
 /// What a run leaves.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
@@ -194,6 +208,8 @@ pub struct Results {
     pub gradient: Option<Gradient>,
     /// The event log.
     pub events: Vec<Event>,
+    /// Where events gave a variable two values at once, the first few.
+    pub contradictions: Vec<Contradiction>,
     /// What the solver did.
     pub statistics: Statistics,
     /// What initial equations determined at the start.

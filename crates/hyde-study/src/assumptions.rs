@@ -1,10 +1,12 @@
 //! What was assumed of records, tables and FMUs, each as a sentence.
 
 use crate::Project;
+use crate::not_numbers;
 use crate::run_failure::instant;
 use hyde_experiment::{Run, extent, is_over_frequency};
 use hyde_program::{Constant, Method, Program};
 use hyde_signal::Table;
+use hyde_sim::Contradiction;
 use hyde_units::significant;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +14,19 @@ use std::collections::{BTreeMap, BTreeSet};
 pub fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<String> {
     let mut all = all(project, program, &run.start, run.stop_s);
     all.extend(of_method(program, run));
+    all.extend(run.results.contradictions.iter().map(of_contradiction));
+    all.extend(not_numbers::of_run(program, run));
     all
+}
+
+fn of_contradiction(found: &Contradiction) -> String {
+    let [first, second] = &found.causes;
+    let [before, after] = found.values.map(|value| significant(value, 5));
+    format!(
+        "at {} s `{first}` and `{second}` set the same variable, to {before} and {after} (SI units): the second one counts. Write \
+         both in one `when … elsewhen`, or let one of them set a variable of its own",
+        significant(found.t, 6)
+    )
 }
 
 /// Steps in a period of a source that leave no pulse out.

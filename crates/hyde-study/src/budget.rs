@@ -4,7 +4,7 @@
 use crate::asked::Asked;
 use crate::runs::{How, project_of, solved};
 use crate::{Fault, Loaded, Project, Refused};
-use hyde_compiler::{Compiled, changed, ideals};
+use hyde_compiler::{Compiled, changed, covers, ideals};
 use hyde_experiment::{BudgetOf, Estimate, Run};
 use hyde_syntax::ast::{Experiment, Ideal};
 use hyde_units::NamedUnit;
@@ -150,10 +150,11 @@ fn of_experiment(project: &Project) -> Result<Experiment, String> {
     }
     for ideal in ideals(experiment) {
         let changed = changed(ideal);
+        let same = |name: &str, set: &str| covers(name, set) || covers(set, name);
         let both = project
             .settings
             .iter()
-            .find(|setting| changed.contains(&setting.path));
+            .find(|setting| changed.iter().any(|name| same(name, &setting.path)));
         if let Some(setting) = both {
             return Err(format!(
                 "`--set {}` sets a parameter that `{}` of the budget varies",

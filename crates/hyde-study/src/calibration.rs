@@ -16,7 +16,9 @@ use crate::refused::{Fault, Refused};
 use hyde_calibrate::{CalibrationPlan, Observer, Recording, Varied};
 use hyde_compiler::Compiled;
 use hyde_diag::Diagnostic;
+use hyde_program::Constant;
 use hyde_syntax::ast::{Experiment, Study, StudyKind};
+use hyde_units::engineering_difference;
 
 /// Everything a calibration is made of, of one experiment.
 pub struct Calibration {
@@ -102,6 +104,21 @@ pub(crate) fn prepared(mut project: Project) -> Result<Prepared, Refused> {
         .collect();
     let mut p = vec![0.0; program.n_parameters];
     program.kernels.parameters(&set, &mut p);
+    let channels = program.experiment.measured.iter().enumerate();
+    let negative: Vec<Diagnostic> = channels
+        .filter_map(|(number, channel)| {
+            let noise = program.kernels.constant(Constant::Noise(number), &p);
+            let noise = noise.filter(|noise| *noise < 0.0)?;
+            let shown = engineering_difference(noise, &channel.unit);
+            let span = channel.origin.span;
+            Some(refused::negative_noise(&channel.name, &shown, span))
+        })
+        .collect();
+    if !negative.is_empty() {
+        let each = negative.into_iter();
+        each.for_each(|own| project.diagnostics.push(own));
+        return Err(project.refused(Fault::Model));
+    }
     Ok(Prepared {
         project,
         compiled,

@@ -18,6 +18,7 @@
 //! operating_point   about which point a model is linearised             operating_point.rs
 //! check             everything in a file compiled, and nothing run      check.rs
 //! assumptions       what was assumed of records, tables and FMUs        assumptions.rs
+//! not_numbers       columns of a run without a number                   not_numbers.rs
 //! responses         frequency responses and stability margins           responses.rs
 //! modes             natural frequencies, and parameters from them       modes.rs
 //! state_space       the linearised model as matrices                    state_space.rs
@@ -63,6 +64,7 @@ mod known;
 pub mod left_model;
 pub mod modes;
 mod near;
+mod not_numbers;
 pub mod operating_point;
 mod package;
 pub mod ports;

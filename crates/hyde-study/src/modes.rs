@@ -75,7 +75,7 @@ pub fn modes(
         let mode = pole.mode();
         if below.is_none_or(|limit| mode.frequency_hz < limit) {
             modes.push(mode);
-            shapes.push(mode_shape(program, p, &linear, (&poles, &pole)));
+            shapes.push(mode_shape(program, &linear, (&poles, &pole)));
         }
     }
     let notes = assumptions::of_model(&prepared.project, program, p);

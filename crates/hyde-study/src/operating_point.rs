@@ -4,7 +4,7 @@ use crate::settings;
 use hyde_experiment::LinearizeError;
 use hyde_program::{Moment, Program};
 use hyde_sim::PointTime;
-use hyde_units::Dimension;
+use hyde_units::{Dimension, significant};
 
 /// `0.3 [s]`, `start` or `steady`.
 pub fn point_time(text: Option<&str>) -> Result<PointTime, String> {
@@ -15,7 +15,7 @@ pub fn point_time(text: Option<&str>) -> Result<PointTime, String> {
             let help =
                 || format!("`--at {text}`: write `--at '0.3 [s]'`, `--at start` or `--at steady`");
             let time = settings::quantity(text, Dimension::TIME);
-            let time = time.filter(|time| *time >= 0.0);
+            let time = time.filter(|time| time.is_finite());
             time.map(PointTime::At).ok_or_else(help)
         }
     }
@@ -28,8 +28,10 @@ pub fn moment(asked: Option<&str>, at: Moment, time: Option<f64>) -> Result<Poin
         (None, Moment::Start) => Ok(PointTime::Start),
         (None, Moment::Steady) => Ok(PointTime::Steady),
         (None, Moment::At) => match time {
-            Some(time) if time >= 0.0 => Ok(PointTime::At(time)),
-            Some(_) | None => Err("`at`: a run has no time below 0".to_owned()),
+            Some(time) if time.is_finite() => Ok(PointTime::At(time)),
+            Some(_) | None => {
+                Err("`at`: the time of the operating point is not a number".to_owned())
+            }
         },
     }
 }
@@ -82,6 +84,11 @@ pub fn why_not(error: &LinearizeError) -> String {
         LinearizeError::Singular => {
             "the algebraic variables are not determined in these modes".to_owned()
         }
+        LinearizeError::BeforeStart(t, start_s) => format!(
+            "the run begins at {} s, behind the operating point at {} s",
+            significant(*start_s, 6),
+            significant(*t, 6)
+        ),
         LinearizeError::Failed(failure) => {
             format!("no operating point was found: {:?}", failure.kind)
         }

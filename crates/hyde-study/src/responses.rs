@@ -136,7 +136,7 @@ impl Prepared {
         let program = &compiled.program;
         let no_cut = program.experiment.cuts.is_empty();
         if no_cut && options.margins {
-            let reason = "the signal at which to open the loop is missing: write `margins of SIGNAL;` in the experiment, or `--cut SIGNAL` here; for example the output of a controller";
+            let reason = "the signal at which to open the loop is missing: write `margins of SIGNAL;` in the experiment, or give the option `--cut SIGNAL`; for example the output of a controller";
             return Err(Refused::Asked(reason.to_owned()));
         }
         if no_cut && program.experiment.bodes.is_empty() {

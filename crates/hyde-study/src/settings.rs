@@ -1,7 +1,7 @@
 //! `--set path=value [unit]`.
 
 use hyde_program::{Given, Parameter};
-use hyde_units::{Agreement, Dimension, NamedUnit};
+use hyde_units::{Agreement, Dimension, NamedUnit, format_value};
 
 /// A value set from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +113,7 @@ pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
         ));
     }
     if setting.si {
-        return Ok(());
+        return check_si(setting, parameter);
     }
     let given = Given {
         value: setting.value,
@@ -136,6 +136,23 @@ pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
         [only] => format!("`{name}` {reason}: write {only}"),
         _ => format!("`{name}` {reason}"),
     })
+}
+
+/// Whether a number that is SI as it stands is one that the parameter may have.
+fn check_si(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
+    let (name, value) = (&setting.path, setting.value);
+    if !value.is_finite() {
+        return Err(format!(
+            "`{name}` cannot be {value}: it takes finite numbers"
+        ));
+    }
+    match parameter.allowed.refusal(value, &parameter.unit) {
+        None => Ok(()),
+        Some(why) => {
+            let shown = format_value(value, &parameter.unit);
+            Err(format!("`{name}` cannot be {shown}: {why}"))
+        }
+    }
 }
 
 #[cfg(test)]

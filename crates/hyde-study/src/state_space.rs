@@ -82,7 +82,7 @@ pub fn state_space(
             });
         }
     };
-    let system = hyde_experiment::state_space(program, p, &linear, (&inputs, &outputs));
+    let system = hyde_experiment::state_space(program, &linear, (&inputs, &outputs));
     let Some(system) = system else {
         let diagnostic = delayed(program);
         prepared.project.diagnostics.push(diagnostic);
@@ -140,6 +140,7 @@ fn no_system(program: &Program, error: &LinearizeError) -> Option<Diagnostic> {
         LinearizeError::NoInput(_)
         | LinearizeError::TooLarge(_)
         | LinearizeError::Singular
+        | LinearizeError::BeforeStart(..)
         | LinearizeError::Failed(_) => None,
     }
 }

@@ -78,9 +78,10 @@ impl Seen {
         match (self.given.text.as_str(), units.is_empty()) {
             (text, true) => text.to_owned(),
             ("", false) => format!("({})", units.join(", ")),
-            (text, false) => match text.split_once(')') {
-                Some((inner, rest)) if text.starts_with('(') => {
-                    format!("{inner}, {}){rest}", units.join(", "))
+            (text, false) => match closed(text) {
+                Some(at) if text.starts_with('(') => {
+                    let (inner, rest) = text.split_at(at);
+                    format!("{inner}, {}{rest}", units.join(", "))
                 }
                 _ => format!("({}) {text}", units.join(", ")),
             },
@@ -95,5 +96,41 @@ impl Seen {
         bare.filter(|c| c.shown.role != hyde_signal::look::Role::State)
             .map(|c| c.name.as_str())
             .collect()
+    }
+}
+
+/// Where the settings end: the first closing parenthesis that is not in a text.
+fn closed(settings: &str) -> Option<usize> {
+    let (mut quoted, mut escaped) = (false, false);
+    let mut signs = settings.char_indices();
+    let end = signs.find(|(_, sign)| {
+        let own = std::mem::take(&mut escaped);
+        match sign {
+            '\\' if quoted && !own => escaped = true,
+            '"' if !own => quoted = !quoted,
+            _ => {}
+        }
+        *sign == ')' && !quoted
+    });
+    end.map(|(at, _)| at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::closed;
+
+    #[test]
+    fn a_parenthesis_in_a_name_does_not_end_the_settings() {
+        for (settings, inner) in [
+            (
+                r#"(column = "Pos (filt)" in [mm]) every 1 [ms]"#,
+                r#"(column = "Pos (filt)" in [mm]"#,
+            ),
+            (r#"(column = "a\") b")"#, r#"(column = "a\") b""#),
+            ("(run = 1)", "(run = 1"),
+        ] {
+            assert_eq!(closed(settings).map(|at| &settings[..at]), Some(inner));
+        }
+        assert_eq!(closed("every 1 [ms]"), None);
     }
 }

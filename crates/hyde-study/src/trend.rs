@@ -92,8 +92,20 @@ fn quantities(report: &Value) -> Vec<(usize, String, String, Value)> {
     let mut found = Vec::new();
     for effect in list(&report["effects"]) {
         let name = format!("{} at {}", text(&effect["effect"]), text(&effect["site"]));
-        let size = json!({ "value": effect["size"], "interval": effect["interval"] });
-        found.push((0, name.clone(), text(&effect["unit"]), size));
+        let sizes: Vec<(&String, &Value)> =
+            effect["sizes"].as_object().into_iter().flatten().collect();
+        // The amplitude of a sine and a cosine is neither of them.
+        let told = sizes.iter().any(|(_, own)| own["value"] == effect["size"]);
+        match told && sizes.len() > 1 {
+            true => found.extend(sizes.into_iter().map(|(size, own)| {
+                let name = format!("{name}, {size}");
+                (0, name, text(&own["unit"]), own.clone())
+            })),
+            false => {
+                let size = json!({ "value": effect["size"], "interval": effect["interval"] });
+                found.push((0, name.clone(), text(&effect["unit"]), size));
+            }
+        }
         for (shape, quantity) in effect["shape"].as_object().into_iter().flatten() {
             let unit = text(&quantity["unit"]);
             found.push((1, format!("{name}, {shape}"), unit, quantity.clone()));
@@ -173,6 +185,21 @@ pub fn word(slope: &Slope) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_of_several_sizes_has_a_trend_and_a_pair_its_amplitude() {
+        let of = |value: f64| json!({ "value": value, "unit": "N", "interval": [value, value] });
+        let effect = |size: f64, sizes: Value| json!({ "effect": "E", "site": "s", "size": size, "unit": "N", "interval": [0, 9], "sizes": sizes, "shape": {} });
+        let named = |own: Value| -> Vec<String> {
+            let report = json!({ "effects": [own], "parameters": [] });
+            quantities(&report).into_iter().map(|own| own.1).collect()
+        };
+        let several = effect(2.0, json!({ "F1": of(1.0), "F2": of(2.0) }));
+        assert_eq!(named(several), ["E at s, F1", "E at s, F2"]);
+        let pair = effect(5.0, json!({ "Fs": of(3.0), "Fc": of(4.0) }));
+        assert_eq!(named(pair), ["E at s"]);
+        assert_eq!(named(effect(1.0, json!({ "F": of(1.0) }))), ["E at s"]);
+    }
 
     #[test]
     fn days_are_those_of_the_calendar() {

@@ -19,6 +19,7 @@ mod parse;
 mod recover;
 mod refusals;
 mod slips;
+mod twice;
 mod words;
 mod written;
 

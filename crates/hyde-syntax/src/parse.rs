@@ -18,7 +18,7 @@ use crate::ast;
 use crate::grammar::{self, Rule};
 use crate::matcher::Pairs;
 use crate::written::{Node, Part, Written};
-use crate::{forms, habits, matcher, nesting, recover, refusals, slips, words};
+use crate::{forms, habits, matcher, nesting, recover, refusals, slips, twice, words};
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 
 /// What is found where nothing else is.
@@ -32,7 +32,9 @@ pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> 
         diagnostics.push(diagnostic);
         return ast::File::default();
     }
-    Parser::new(text, file, diagnostics).file()
+    let tree = Parser::new(text, file, diagnostics).file();
+    twice::refuse_twice(&tree, diagnostics);
+    tree
 }
 
 /// Parses one source file and records each construct that is accepted.

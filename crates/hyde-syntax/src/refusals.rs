@@ -16,6 +16,14 @@ diagnostics! {
         "this text goes on to the end of the file"; at opened, "begins here";
         help "end it with `\"`; if it has an end, an earlier text is not closed";
     }
+    fn declared_twice(name: &Name, first: Span) = error Duplicate {
+        "`{}` is declared twice", name.text; at name.span, "declared again here"; at first, "declared first here";
+        help "rename one of the two, or remove it";
+    }
+    fn said_twice(word: &str, here: Span, first: Span) = error Duplicate {
+        "`{word}` is said twice"; at here, "here again"; at first, "here first";
+        help "remove one of the two";
+    }
     fn too_deep(here: Span) = error TooDeep {
         "this statement is nested too deeply or too long";
         at here, "the limit of 60 nested brackets or 500 operators is exceeded here";

@@ -229,7 +229,9 @@ fn product(before: &str, here: &str, expected: &str) -> Option<&'static str> {
     let value = here.starts_with(is_word) || here.starts_with('(');
     let sides = before.ends_with(ends_value) && value;
     let goes_on = expected.contains("an operator") || expected.contains("an expression");
-    (sides && goes_on && !is_keyword(here)).then_some(PRODUCT)
+    // `vary k over {1, 2}`: how the statement is written tells more.
+    let begun = crate::forms::of(before).is_some() && !before.contains(['=', '(']);
+    (sides && goes_on && !is_keyword(here) && !begun).then_some(PRODUCT)
 }
 
 /// A statement of an experiment that has not its first word, a setting of its run, or a file that has not its quotes.

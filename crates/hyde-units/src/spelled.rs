@@ -9,6 +9,9 @@ use crate::{NamedUnit, UnitError};
 /// Spellings of turns a minute, in small letters and without blanks.
 const TURNS_A_MINUTE: [&str; 6] = ["u/min", "umdr/min", "umin", "r/min", "rot/min", "tr/min"];
 
+/// Units of distance and angle, of which `ps` makes a speed: `mmps`.
+const MOVED: [&str; 9] = ["m", "mm", "um", "in", "ft", "rad", "mrad", "deg", "rev"];
+
 /// Symbols in one unit that may be spelled otherwise.
 const MOST_SYMBOLS: usize = 4;
 
@@ -20,6 +23,15 @@ pub fn parse_spelled(text: &str) -> Result<NamedUnit, UnitError> {
     let small: String = text.to_lowercase().split_whitespace().collect();
     if TURNS_A_MINUTE.contains(&small.as_str()) {
         return NamedUnit::parse("rpm");
+    }
+    if let Some(speed) = speed(text.trim()) {
+        return Ok(speed);
+    }
+    let words: Vec<&str> = text.split_whitespace().collect();
+    if let [_, _, ..] = words.as_slice()
+        && let Ok(product) = NamedUnit::parse(&words.join("."))
+    {
+        return Ok(product);
     }
     let first = match NamedUnit::parse(text) {
         Ok(unit) => return Ok(unit),
@@ -45,17 +57,14 @@ pub fn parse_spelled(text: &str) -> Result<NamedUnit, UnitError> {
     Err(first)
 }
 
-/// The unit with which the name of a column ends: `position_mm`, `Weg/mm`, `Speed (rpm)`.
-///
-/// A name may end like this by chance, so that it is a reason to ask, and no unit.
-#[must_use]
-pub fn unit_in_name(name: &str) -> Option<NamedUnit> {
-    let unit = |(_, unit): (&str, &str)| {
-        let unit = unit.trim_matches(['[', ']', '(', ')']);
-        parse_spelled(unit).ok()
-    };
-    let after_all = name.split_once('/').and_then(unit);
-    after_all.or_else(|| name.rsplit_once(['_', ' ', '/']).and_then(unit))
+/// `mmps`, `radps2`, `mmpmin`.
+fn speed(text: &str) -> Option<NamedUnit> {
+    let ends = [("ps", "s"), ("ps2", "s2"), ("pss", "s2"), ("pmin", "min")];
+    ends.iter().find_map(|(end, below)| {
+        let above = text.strip_suffix(end)?;
+        let known = MOVED.contains(&above);
+        known.then(|| NamedUnit::parse(&format!("{above}/{below}")).ok())?
+    })
 }
 
 #[cfg(test)]
@@ -79,21 +88,14 @@ mod tests {
             ("mm", "mm"),
             ("KN", "kN"),
             ("Rpm", "rpm"),
+            ("mm s^-1", "mm.s^-1"),
+            ("N m", "N.m"),
+            ("mmps", "mm/s"),
+            ("radps2", "rad/s2"),
+            ("degps", "deg/s"),
         ] {
             assert_eq!(parse_spelled(spelled).unwrap().text(), unit, "{spelled}");
         }
-    }
-
-    #[test]
-    fn a_name_may_end_with_a_unit() {
-        let unit = |name| unit_in_name(name).map(|unit| unit.text().to_owned());
-        assert_eq!(unit("pos_mm").as_deref(), Some("mm"));
-        assert_eq!(unit("Weg/mm").as_deref(), Some("mm"));
-        assert_eq!(unit("v/mm/s").as_deref(), Some("mm/s"));
-        assert_eq!(unit("Speed (rpm)").as_deref(), Some("rpm"));
-        assert_eq!(unit("torque_Nm").as_deref(), Some("N.m"));
-        assert_eq!(unit("pos_act"), None);
-        assert_eq!(unit("mm"), None);
     }
 
     #[test]

@@ -69,7 +69,7 @@ fn a_mode_tells_where_its_energy_is() {
     let linear = linearize(program, &BTreeMap::new(), &p, &[], &[]).unwrap();
     let poles = poles(&linear);
     let found = poles.oscillating();
-    let shape = mode_shape(program, &p, &linear, (&poles, &found[0])).unwrap();
+    let shape = mode_shape(program, &linear, (&poles, &found[0])).unwrap();
     let share = |component: &str, account: &str| {
         let mut shares = shape.shares.iter();
         shares

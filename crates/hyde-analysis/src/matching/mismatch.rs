@@ -104,10 +104,21 @@ fn too_few(
     let names: Vec<String> = names.collect();
     let help = match variable.flow {
         true => "connect its connector, or give the force a law".to_owned(),
-        false => format!("add an equation for it: `{} = …;`", short(&variable.name)),
+        false => equation_for(&variable.name),
     };
     let place = place_of(system, &variable.origin);
     refused::undetermined(&what, place, &equations, &names, &help)
+}
+
+/// The equation to add for a variable: in the class of its component, or in the model.
+pub(crate) fn equation_for(name: &str) -> String {
+    let short = short(name);
+    match short == name {
+        true => format!("add an equation for it: `{short} = …;`"),
+        false => format!(
+            "add an equation for it: `{short} = …;` in the class of its component, or `{name} = …;` in the model"
+        ),
+    }
 }
 
 /// An equation between states alone: they cannot all be states.

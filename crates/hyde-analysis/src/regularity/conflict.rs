@@ -2,8 +2,7 @@
 
 use super::pencil::Pencil;
 use super::words::{Conflict, floating, generic, held_twice, loose, parameter};
-use crate::matching::{self, Node, missing_boundary, sides, unbound_input};
-use crate::refusals::words::short;
+use crate::matching::{self, Node, equation_for, missing_boundary, sides, unbound_input};
 use crate::refusals::{place_of, unmatched as refused};
 use crate::system::System;
 use hyde_diag::{Diagnostic, Diagnostics, MadeBy, Span};
@@ -96,7 +95,6 @@ fn missing(system: &System, unknowns: &[VarId]) -> Diagnostic {
 
 fn too_few(system: &System, likely: VarId, unknowns: &[VarId]) -> Diagnostic {
     let variable = &system.flat.variables[likely];
-    let short = short(&variable.name);
     let mut containing: Vec<Span> = Vec::new();
     for node in mentioning(system, likely).into_iter().take(2) {
         let origin = matching::origin(system, node);
@@ -112,7 +110,7 @@ fn too_few(system: &System, likely: VarId, unknowns: &[VarId]) -> Diagnostic {
         .collect();
     let repair = match variable.flow {
         true => "connect its connector, or give the force a law".to_owned(),
-        false => format!("add an equation for it: `{short} = …;`"),
+        false => equation_for(&variable.name),
     };
     let place = place_of(system, &variable.origin);
     let open = (others.as_slice(), unknowns.len() > 6);

@@ -33,7 +33,7 @@ impl Quantity {
 pub struct Finding {
     /// Number of the hypothesis.
     pub hypothesis: usize,
-    /// Its size: of a sine and a cosine their amplitude.
+    /// Its size: of a sine and a cosine their amplitude, of several sizes the first whose interval leaves out 0.
     pub size: Quantity,
     /// All its sizes.
     pub sizes: Vec<Quantity>,
@@ -59,6 +59,15 @@ impl Finding {
         Taken {
             round: self.round,
             alternatives: self.alternatives.clone(),
+        }
+    }
+
+    /// What it is as large as: the amplitude of a sine and a cosine, else all its sizes.
+    #[must_use]
+    pub fn told_sizes(&self) -> &[Quantity] {
+        match self.sizes.iter().any(|own| own.name == self.size.name) {
+            true => &self.sizes,
+            false => std::slice::from_ref(&self.size),
         }
     }
 

@@ -252,6 +252,7 @@ mod tests {
             shapes: vec![order],
             periodic: Some(0),
             resonant: None,
+            recurs: true,
         };
         let grid = Grid::new(&hypothesis);
         for whole in (1..=20).map(f64::from) {

@@ -67,10 +67,12 @@ pub struct Hypothesis {
     pub periodic: Option<usize>,
     /// The shape that is the frequency of a resonance, if it has one.
     pub resonant: Option<usize>,
+    /// Whether its signature says that it comes again: with a period, an order, or an angle.
+    pub recurs: bool,
 }
 
 impl Hypothesis {
-    /// Whether its two sizes are those of a sine and a cosine.
+    /// Whether its two sizes are those of a sine and a cosine: of what comes again, in one unit, `As` and `Ac`.
     #[must_use]
     pub fn is_pair(&self) -> bool {
         let [a, b] = self.sizes.as_slice() else {
@@ -78,7 +80,10 @@ impl Hypothesis {
         };
         let stem = |name: &str, ending: char| name.strip_suffix(ending).map(str::to_owned);
         let alike = a.unit.unit().dimension == b.unit.unit().dimension;
-        alike && stem(&a.name, 's').is_some() && stem(&a.name, 's') == stem(&b.name, 'c')
+        self.recurs
+            && alike
+            && stem(&a.name, 's').is_some()
+            && stem(&a.name, 's') == stem(&b.name, 'c')
     }
 
     /// How many of its sizes make it what it is: the first, and those of its unit behind that. A spring with a pull beside its
@@ -120,3 +125,36 @@ pub(crate) fn brings_modes(program: &Program, before: &Program) -> bool {
 
 /// Puts hypotheses, by number, on the model; `None` where they cannot be together.
 pub(crate) type Build<'a> = dyn Fn(&[usize]) -> Option<Built> + Sync + 'a;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hyde_units::Dimension;
+
+    #[test]
+    fn a_sine_and_a_cosine_come_again_and_have_one_unit() {
+        let knob = |name: &str, dimension| Knob {
+            name: name.to_owned(),
+            value: 0.0,
+            range: (-1.0, 1.0),
+            integer: false,
+            unit: NamedUnit::usual(dimension),
+        };
+        let hypothesis = |names: [&str; 2], second, recurs| Hypothesis {
+            effect: "E".to_owned(),
+            site: "guide".to_owned(),
+            aliases: Vec::new(),
+            sizes: vec![knob(names[0], Dimension::LENGTH), knob(names[1], second)],
+            shapes: Vec::new(),
+            periodic: None,
+            resonant: None,
+            recurs,
+        };
+        let length = Dimension::LENGTH;
+        assert!(hypothesis(["as", "ac"], length, true).is_pair());
+        assert!(!hypothesis(["as", "ac"], length, false).is_pair());
+        assert!(!hypothesis(["as", "ac"], Dimension::TIME, true).is_pair());
+        assert!(!hypothesis(["as", "bc"], length, true).is_pair());
+        assert!(!hypothesis(["e1", "e2"], length, true).is_pair());
+    }
+}

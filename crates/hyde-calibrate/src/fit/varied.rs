@@ -1,6 +1,7 @@
 //! [`Varied`]: a parameter that calibration may change, with what is known of it beforehand.
 
-use hyde_program::{Prior, Program};
+use hyde_program::{Parameter, Prior, Program};
+use hyde_units::Kind;
 
 /// A parameter of which no range is declared may be so many times further off than it is said to be known. Further away a
 /// model that lacks something drives its parameters where no part can be: a soft nut for backlash.
@@ -26,13 +27,13 @@ pub struct Varied {
 }
 
 impl Varied {
-    /// Every uncertain parameter of a program, those that shape the equations apart. `p` are the declared values.
+    /// Every uncertain parameter of a program that a fit can move by small steps. `p` are the declared values.
     #[must_use]
     pub fn uncertain(program: &Program, p: &[f64]) -> Vec<Self> {
         let known = program
             .parameters
             .iter()
-            .filter(|q| !q.structural && q.prior.is_some());
+            .filter(|q| q.prior.is_some() && Self::moves(q));
         known
             .flat_map(|parameter| Self::of(program, &parameter.name, p))
             .collect()
@@ -44,7 +45,7 @@ impl Varied {
         let Some((parameter, element)) = program.parameter(name) else {
             return Vec::new();
         };
-        if parameter.structural {
+        if !Self::moves(parameter) {
             return Vec::new();
         }
         let whole = parameter.name == name;
@@ -73,6 +74,11 @@ impl Varied {
                 }
             })
             .collect()
+    }
+
+    /// Whether small steps can move a parameter: not one that changes the equations, nor an Integer or a Boolean.
+    fn moves(parameter: &Parameter) -> bool {
+        !parameter.structural && parameter.allowed.kind == Kind::Real
     }
 
     /// What the parameter is measured in: a visible change, its prior, a tenth of its value or of its range.

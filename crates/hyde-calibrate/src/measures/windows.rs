@@ -71,12 +71,12 @@ pub(crate) fn windows(
 }
 
 impl Windows {
-    /// Root mean square over all windows of a channel, SI.
+    /// Root mean square over all windows of a channel, SI; NaN where there is none.
     #[must_use]
     pub fn total(&self, channel: usize) -> f64 {
         let known = self.rms[channel].iter().filter(|rms| rms.is_finite());
         let (sum, count) = known.fold((0.0, 0.0), |(sum, n), rms| (sum + rms * rms, n + 1.0));
-        (sum / f64::max(count, 1.0)).sqrt()
+        (sum / count).sqrt()
     }
 }
 

@@ -108,12 +108,12 @@ impl<'a> Plant<'a> {
     ) -> Result<Self, Unsupported> {
         let setup = Setup {
             start_s: recording.start_s,
-            ..Setup::new(p.clone(), &recording.tables, recording.start_s + 1.0)
+            ..Setup::new(p, &recording.tables, recording.start_s + 1.0)
         };
         let modes = PointModes::Sliding(modes);
         let start = hyde_sim::operating_point(program, &setup, PointTime::Start, modes);
         let start = start.map_err(no_start)?;
-        Self::from(program, recording, p, (start.y, start.yp, start.z))
+        Self::from(program, recording, start.p, (start.y, start.yp, start.z))
     }
 
     fn from(

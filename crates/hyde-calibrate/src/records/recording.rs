@@ -40,7 +40,7 @@ pub enum RecordError {
 /// Record and column, none for the time, which number of it, and the number.
 type RecordedValue = ((String, Option<String>), RecordValueKind, f64);
 
-/// A record at even rows, as close as the readings of its fastest channel.
+/// A record at even rows, as close as the readings of its fastest channel, or as the rows of a column that drives the model.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// As messages call it.
@@ -106,7 +106,8 @@ impl Recording {
         if base.time.len() < 2 * SETTLING_ROWS {
             return Err(RecordError::Short(name.to_owned(), base.time.len()));
         }
-        let (time, uneven) = even_rows::evenly(&base.record, &base.time, |from_s, to_s| {
+        let (record, time) = closest_rows(program, &tables, base);
+        let (time, uneven) = even_rows::evenly(record, &time, |from_s, to_s| {
             is_driven(program, &tables, from_s, to_s)
         })?;
         let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
@@ -202,6 +203,30 @@ impl Recording {
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
         parameters(program, &self.record_values, set)
     }
+}
+
+/// The closest rows of a record: the readings of its fastest channel, or the rows of a column that drives the model where these
+/// are closer, as far as there are readings. What drives the model between two readings moves it.
+fn closest_rows<'r>(
+    program: &'r Program,
+    tables: &'r BTreeMap<String, Table>,
+    base: &'r Read,
+) -> (&'r str, Vec<f64>) {
+    let (first, last) = (base.time[0], base.time[base.time.len() - 1]);
+    let within = |column: &'r Column| {
+        let table = tables.get(&column.record)?.reading(&column.column);
+        let rows = table.time().iter().copied();
+        let rows: Vec<f64> = rows.filter(|t| (first..=last).contains(t)).collect();
+        Some((column.record.as_str(), rows))
+    };
+    let driving = program.columns.iter().filter(|column| column.continuous);
+    let driving = driving.filter_map(within);
+    let closest = driving.max_by_key(|(_, rows)| rows.len());
+    // A few more rows are those in which a reading was lost.
+    let closer = |rows: &[f64]| rows.len() as f64 > 1.5 * base.time.len() as f64;
+    closest
+        .filter(|(_, rows)| closer(rows))
+        .unwrap_or_else(|| (&base.record, base.time.clone()))
 }
 
 /// Whether every column that drives a model has rows in a stretch of time in which a channel has no reading.

@@ -286,6 +286,7 @@ mod tests {
             shapes: Vec::new(),
             periodic: None,
             resonant: None,
+            recurs: false,
         };
         let hypotheses = [hypothesis("A"), hypothesis("B")];
         let asked = Asked {

@@ -15,13 +15,13 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "EXPERIMENT", conflicts_with = "sweep")]
     pub(crate) of: Option<String>,
     /// With `--of`: a varied parameter, written as in a sweep: `--vary 'gap in 5 .. 50 [um]'` (repeatable)
-    #[arg(long, value_name = "WHAT", requires = "of")]
+    #[arg(long, value_name = "WHAT", requires = "of", conflicts_with = "sweep")]
     pub(crate) vary: Vec<String>,
     /// With `--of`: sampling plan: `--points 'grid 10'`, `'random 500'`, `'latin 500'`, `'sobol 512'`
-    #[arg(long, value_name = "HOW", requires = "of")]
+    #[arg(long, value_name = "HOW", requires = "of", conflicts_with = "sweep")]
     pub(crate) points: Option<String>,
     /// With `--of`: file of a table with one column per parameter and one row per case
-    #[arg(long, value_name = "FILE", requires = "of")]
+    #[arg(long, value_name = "FILE", requires = "of", conflicts_with = "sweep")]
     pub(crate) cases: Option<String>,
     /// Set a parameter in all cases: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]

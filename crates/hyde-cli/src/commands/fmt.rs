@@ -79,7 +79,7 @@ fn file(path: &Path, args: &FmtArgs) -> (Outcome, Exit) {
     if args.diff {
         print_output(&difference(&name, &text, &new));
     } else if !args.check
-        && let Err(reason) = files::write(path, new.as_bytes())
+        && let Err(reason) = files::rewrite(path, new.as_bytes())
     {
         print_error(&format!("error: {reason}"));
         return (Outcome::Failed(Exit::CommandLine), exit);

@@ -2,6 +2,7 @@
 
 mod commands;
 mod ran;
+mod stdio;
 
 use super::explain;
 use crate::exit::Exit;
@@ -9,21 +10,25 @@ use crate::files;
 use crate::output::print_error;
 use commands::Commands;
 use hyde_diag::Code;
-use hyde_editor::{Host, Order, Outcome};
+use hyde_editor::{Ended, Host, Order, Outcome};
 use hyde_study::world::Disk;
-use lsp_server::Connection;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Serves one editor until it ends the session.
 pub(crate) fn lsp() -> Exit {
-    let (connection, threads) = Connection::stdio();
+    let (connection, threads) = stdio::connection();
     let served = hyde_editor::serve(&connection, Arc::new(Disk), Box::<Machine>::default());
     // The threads end when nobody can send any more.
     drop(connection);
-    let joined = threads.join().map_err(|error| error.to_string());
-    match served.and(joined) {
-        Ok(()) => Exit::Done,
+    let joined = match &served {
+        // The editor may still write, to nobody.
+        Ok(Ended::Exit) => Ok(()),
+        Ok(Ended::ShutDown | Ended::Gone) | Err(_) => threads.join(),
+    };
+    match joined.and(served) {
+        Ok(Ended::ShutDown | Ended::Gone) => Exit::Done,
+        Ok(Ended::Exit) => Exit::Model,
         Err(reason) => {
             print_error(&format!("error: {reason}"));
             Exit::CommandLine

@@ -55,6 +55,7 @@ fn listed(args: &ParamsArgs) -> Result<String, Exit> {
                     "prior": prior(parameter),
                     "source": parameter.source,
                     "structural": parameter.structural,
+                    "found": parameter.found,
                     "place": project.sources.place(parameter.origin.span),
                 })
             })
@@ -74,6 +75,10 @@ fn listed(args: &ParamsArgs) -> Result<String, Exit> {
             .source
             .as_ref()
             .map_or_else(String::new, |source| format!("from {source}"));
+        let source = match parameter.found {
+            true => format!("a guess, found at the start {source}"),
+            false => source,
+        };
         let line = format!(
             "{:<width$} {:>12} {unit:<12} {:>6} {source}",
             parameter.name,

@@ -14,7 +14,7 @@ mod trajectories;
 
 pub(crate) use solved::{solved, solved_of};
 
-use crate::args::RunArgs;
+use crate::args::{Format, RunArgs};
 use crate::exit::Exit;
 use crate::project::{Project, complain, print_error, print_output};
 use folder::leave;
@@ -25,6 +25,10 @@ use std::time::Duration;
 
 /// Runs an experiment, prints what happened, and leaves its files.
 pub(crate) fn run(args: &RunArgs) -> Exit {
+    if args.format != Format::Csv && args.out.is_none() {
+        let reason = "`--format` is that of a file: write `--out DIR` too";
+        return complain(&args.model, Exit::CommandLine, reason);
+    }
     match solved(args) {
         Ok((project, compiled, run, took)) => finish(args, &project, &compiled, &run, took),
         Err(exit) => exit,

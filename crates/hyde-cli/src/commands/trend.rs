@@ -4,9 +4,9 @@ use crate::args::TrendArgs;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{print_error, print_output};
-use hyde_present::trend::{json, text};
+use hyde_present::trend;
 use hyde_study::trend::trends;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Reads the reports and tells.
@@ -15,6 +15,11 @@ pub(crate) fn trend(args: &TrendArgs) -> Exit {
         Ok(text) => {
             print_output(&text);
             Exit::Done
+        }
+        Err(reason) if args.json => {
+            let told = json!({ "ok": false, "error": reason });
+            print_output(&format!("{told:#}"));
+            Exit::CommandLine
         }
         Err(reason) => {
             print_error(&format!("error: {reason}"));
@@ -28,8 +33,8 @@ fn told(args: &TrendArgs) -> Result<String, String> {
     let reports = reports.map(|folder| Ok((label(folder), report(folder)?)));
     let found = trends(&reports.collect::<Result<Vec<_>, String>>()?)?;
     Ok(match args.json {
-        true => format!("{:#}", json(&found)),
-        false => text(&found),
+        true => format!("{:#}", trend::json(&found)),
+        false => trend::text(&found),
     })
 }
 

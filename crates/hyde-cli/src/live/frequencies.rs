@@ -203,10 +203,10 @@ impl Frequencies {
         let linear = linear.map_err(|error| not_linearised(&error))?;
         let poles = poles(&linear);
         let mut blocks = Vec::new();
-        if let Some(text) = assumed::unstable(program, p, &linear, &poles) {
+        if let Some(text) = assumed::unstable(program, &linear, &poles) {
             blocks.push(failed(text.trim_end().to_owned()));
         }
-        blocks.push(Block::Table(table(program, p, &linear, &poles)));
+        blocks.push(Block::Table(table(program, &linear, &poles)));
         blocks.extend(assumed::blocks(program, &linear, about.time));
         Ok(self.section("Natural frequencies", blocks))
     }
@@ -225,10 +225,10 @@ fn asking<'p>(shown: &'p Project, own: &str) -> Option<&'p str> {
     all.first().map(|experiment| experiment.name.text.as_str())
 }
 
-fn table(program: &Program, p: &[f64], linear: &Linear, poles: &Poles) -> Table {
+fn table(program: &Program, linear: &Linear, poles: &Poles) -> Table {
     let row = |pole: &Pole| {
         let mode = pole.mode();
-        let shape = mode_shape(program, p, linear, (poles, pole));
+        let shape = mode_shape(program, linear, (poles, pole));
         let energy = shape.map_or("clocked parts alone".to_owned(), |own| {
             assumed::shares(&own)
         });

@@ -15,7 +15,7 @@ const SCRIPT: &str = include_str!("page/page.js");
 const STYLE: &str = include_str!("page/style.css");
 
 /// Bytes of a request at most.
-const MOST: u64 = 1 << 20;
+const MOST: usize = 1 << 20;
 
 /// The page may load what this server has and nothing else.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
@@ -59,6 +59,9 @@ struct Site {
 
 impl Site {
     fn answer(&self, mut request: Request, worker: &Worker) {
+        if request.body_length().is_some_and(|length| length > MOST) {
+            return refuse_body(request);
+        }
         let path = request.url().to_owned();
         let own = path
             .strip_prefix('/')
@@ -82,7 +85,10 @@ impl Site {
             }
             (Method::Post, "/run" | "/begin" | "/frequencies" | "/write") if is_json => {
                 let mut body = String::new();
-                let read = request.as_reader().take(MOST).read_to_string(&mut body);
+                let read = request
+                    .as_reader()
+                    .take(MOST as u64)
+                    .read_to_string(&mut body);
                 let moved = read
                     .ok()
                     .and_then(|_| serde_json::from_str::<Moved>(&body).ok());
@@ -122,6 +128,13 @@ fn header(request: &Request, name: &'static str) -> Option<String> {
 /// An answer as JSON to a request that is kept until then.
 fn answered(request: Request) -> Box<dyn FnOnce(Value) + Send> {
     Box::new(move |value: Value| send(request, 200, "application/json", &value.to_string()))
+}
+
+/// Answers a request whose body is too long without reading it. The stream is left open on purpose: where the library closes
+/// it, it first makes room for as many bytes as the request announces.
+fn refuse_body(request: Request) {
+    let response = Response::from_string("the body is too long").with_status_code(413);
+    std::mem::forget(request.upgrade("none", response));
 }
 
 /// Sends a text. A browser that is gone gets none.

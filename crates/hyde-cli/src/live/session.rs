@@ -9,10 +9,12 @@ use hyde_compiler::{Compiled, NewValue, write_values};
 use hyde_diag::Diagnostics;
 use hyde_experiment::{Options, RunError};
 use hyde_present::run_page;
+use hyde_program::Given;
 use hyde_report::{Page, Section, to_body};
 use hyde_signal::Table;
 use hyde_study::settings::Setting;
 use hyde_study::{Aim, Asked, Inputs, Project, Records, run_failure};
+use hyde_units::Kind;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -214,6 +216,7 @@ impl Session {
         if files::read_text(&self.asked.file)? != *text {
             return Err("the file has changed since it was loaded: nothing was written".to_owned());
         }
+        ready.allowed(moved)?;
         let mut notes = Vec::new();
         let mut values = Vec::new();
         for (path, value) in moved {
@@ -239,7 +242,7 @@ impl Session {
         }
         let experiment = ready.project.experiment.as_deref().unwrap_or_default();
         let new = write_values(&ready.project.file, text, experiment, &values)?;
-        files::write(&self.asked.file, new.as_bytes())?;
+        files::rewrite(&self.asked.file, new.as_bytes())?;
         Ok(notes)
     }
 }
@@ -294,6 +297,19 @@ impl Ready {
         hyde_study::render::render(&all, &self.project.sources, false)
     }
 
+    /// Whether a run would take these values.
+    fn allowed(&self, moved: &Moved) -> Result<(), String> {
+        let program = &self.compiled.program;
+        let set: Vec<(String, f64)> = self
+            .settings(moved)?
+            .into_iter()
+            .map(|own| (own.path, own.value))
+            .collect();
+        let allowed = hyde_experiment::parameters(program, &self.tables, &set)
+            .and_then(|all| hyde_experiment::within_bounds(program, &all));
+        allowed.map_err(|error| format!("nothing was written:\n{}", self.told(&error)))
+    }
+
     /// What was set when the command was called, and the values of the sliders over it.
     fn settings(&self, moved: &Moved) -> Result<Vec<Setting>, String> {
         let mut settings = self.set.clone();
@@ -308,6 +324,14 @@ impl Ready {
                 ));
             }
             let si = parameter.unit.unit().to_si(*value);
+            let given = Given {
+                value: si,
+                unit: Some(&parameter.unit),
+                truth: parameter.allowed.kind == Kind::Boolean,
+            };
+            if let Some(misfit) = parameter.misfit(&given) {
+                return Err(format!("`{path}` {}", misfit.reason));
+            }
             settings.push(Setting::of(path.clone(), si, Some(parameter.unit.clone())));
         }
         Ok(settings)

@@ -8,7 +8,8 @@ use crate::command::{Folder, LAG, command, errors, hyde, status};
 use browser::Browser;
 use http::{ask, post};
 use serde_json::{Value, json};
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
 use std::process::{Child, Stdio};
 
 /// The command, ended with the test.
@@ -243,8 +244,16 @@ fn a_run_with_other_values_has_another_curve_and_nothing_else_gets_an_answer() {
         http::request(&live.at("state"), "GET", "evil.example", "").0,
         404
     );
+    // No room is made for a body that is announced too long.
+    let mut stream = TcpStream::connect(at.trim_start_matches("http://")).unwrap();
+    let request = "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999999\r\n\r\n{}";
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut answer = [0; 12];
+    stream.read_exact(&mut answer).unwrap();
+    assert_eq!(&answer, b"HTTP/1.1 413");
+    assert_eq!(ask(&live.at("state")).0, 200);
     // A value that is written goes into the experiment where the file has no number for it.
-    let text = model().replace("T = 10 [ms]", "T = 2*(5 [ms])");
+    let text = model().replace("T = 10 [ms]", "T(min = 1 [ms]) = 2*(5 [ms])");
     std::fs::write(&file, &text).unwrap();
     let mut written = String::new();
     for _ in 0..100 {
@@ -255,6 +264,16 @@ fn a_run_with_other_values_has_another_curve_and_nothing_else_gets_an_answer() {
         }
     }
     assert!(written.contains("\"ok\":true"), "{written}");
+    // The written file is loaded again first.
+    let mut refused = String::new();
+    for _ in 0..100 {
+        (_, refused) = post(&live.at("write"), &json!({ "T": 0.0005 }).to_string());
+        if !refused.contains("has changed since it was loaded") {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    assert!(refused.contains("its `min` is 0.001 s"), "{refused}");
     let new = std::fs::read_to_string(&file).unwrap();
     assert_eq!(
         new,

@@ -1,6 +1,6 @@
 //! `hyde lsp` with Neovim as the editor. `./dev setup` installs it; without it the test says so and looks at nothing.
 
-use crate::command::{Folder, command, errors, text};
+use crate::command::{Folder, command, errors, status, text};
 use serde_json::Value;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
@@ -72,6 +72,36 @@ const EXPERIMENT: &str = "package coasting;\nimport SI.*;\nmodel Coasting\n  par
 
 /// It falls, and is not to: its speed is the square root of what is left.
 const FAILING: &str = "package falling;\nimport SI.*;\nmodel Falling\n  Real x(start = 1, fixed = true);\nequation\n  der(x) = -2 [1/s]*sqrt(x - 0.5);\n  assert(x > 0.8, \"it fell too far\");\nend Falling;\nexperiment fall of Falling\n  solve ida(rtol = 1e-6) stop 1 [s] every 10 [ms];\nend fall;\n";
+
+/// The status of the server, and what it says to some messages.
+fn session(messages: &[&str]) -> (i32, String) {
+    let mut child = command(&["lsp"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    for message in messages {
+        write!(input, "Content-Length: {}\r\n\r\n{message}", message.len()).unwrap();
+    }
+    drop(input);
+    let output = child.wait_with_output().unwrap();
+    (status(&output), text(&output))
+}
+
+#[test]
+fn what_is_no_message_is_answered_and_an_exit_alone_is_an_error() {
+    let begin = r#"{"jsonrpc":"2.0","id":1,"method":"initialize","params":{"capabilities":{}}}"#;
+    let begun = r#"{"jsonrpc":"2.0","method":"initialized","params":{}}"#;
+    let shutdown = r#"{"jsonrpc":"2.0","id":2,"method":"shutdown"}"#;
+    let late = r#"{"jsonrpc":"2.0","id":3,"method":"textDocument/hover"}"#;
+    let exit = r#"{"jsonrpc":"2.0","method":"exit"}"#;
+    let (ended, said) = session(&[begin, begun, "{\"id\": ", "[]", shutdown, late, exit]);
+    assert_eq!(ended, 0, "{said}");
+    assert!(said.contains("-32700"), "{said}");
+    assert_eq!(said.matches("-32600").count(), 2, "{said}");
+    assert_eq!(session(&[begin, begun, exit]).0, 1);
+}
 
 #[test]
 fn neovim_shows_what_the_server_says() {

@@ -1,7 +1,7 @@
 //! An editor that speaks the protocol with a server in the same process.
 
 use hyde_diag::Code;
-use hyde_editor::{Action, Course, Courses, Failure, Host, Label, Order, Outcome};
+use hyde_editor::{Action, Course, Courses, Ended, Failure, Host, Label, Order, Outcome};
 use hyde_study::world::Disk;
 use hyde_units::{Dimension, NamedUnit};
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
@@ -16,7 +16,7 @@ const LONGEST: Duration = Duration::from_secs(60);
 
 pub(crate) struct Client {
     connection: Connection,
-    server: Option<JoinHandle<Result<(), String>>>,
+    server: Option<JoinHandle<Result<Ended, String>>>,
     last: i32,
     pub(crate) told: Vec<Notification>,
     /// What the server asked of the editor.
@@ -229,8 +229,11 @@ impl Client {
     /// Ends the session as an editor does.
     pub(crate) fn end(mut self) {
         self.ask("shutdown", Value::Null);
+        let late = self.ask("textDocument/hover", Value::Null);
+        assert_eq!(late["error"]["code"], -32600, "{late}");
         self.tell("exit", Value::Null);
-        self.server.take().unwrap().join().unwrap().unwrap();
+        let ended = self.server.take().unwrap().join().unwrap();
+        assert_eq!(ended, Ok(Ended::ShutDown));
     }
 }
 

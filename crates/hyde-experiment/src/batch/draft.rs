@@ -187,6 +187,13 @@ impl Draft {
                 }));
                 Ok(())
             }
+            "vary" => {
+                let all = values.iter().find_map(|value| match value {
+                    SettingValue::Everything(part) => Some(path(part)),
+                    SettingValue::Expr(_) => None,
+                });
+                Err(refused::varies_all_of(&all.unwrap_or_default(), span))
+            }
             _ => Err(refused::unknown_setting(word, span)),
         }
     }

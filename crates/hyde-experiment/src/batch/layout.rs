@@ -6,7 +6,10 @@ use super::sample::{Points, SOBOL_LIMITS, Sampling};
 use crate::refusals::sweeps as refused;
 use hyde_diag::{Diagnostic, Span};
 use hyde_program::{Given, Parameter, Prior};
-use hyde_units::Agreement;
+use hyde_units::{Agreement, Kind};
+
+/// So many values of a range are written out.
+const LISTED: f64 = 12.0;
 
 /// A plan in the making.
 pub(super) struct Layout<'m> {
@@ -58,7 +61,8 @@ impl<'m> Layout<'m> {
                 let (input, parameter) = self.number(&name, target.span)?;
                 check(from, &name, parameter)?;
                 check(to, &name, parameter)?;
-                self.range(draft, input, (from.value, to.value), target.span);
+                let ends = (from.value, to.value);
+                self.range(draft, input, ends, (parameter.allowed.kind, target.span))?;
             }
             Varying::Uncertain(span) => {
                 let mut found = false;
@@ -80,7 +84,8 @@ impl<'m> Layout<'m> {
                             Prior::Absolute(spread) => spread,
                         };
                         let input = self.input(name, parameter);
-                        self.range(draft, input, (value - spread, value + spread), *span);
+                        let ends = (value - spread, value + spread);
+                        self.range(draft, input, ends, (parameter.allowed.kind, *span))?;
                         found = true;
                     }
                 }
@@ -147,7 +152,13 @@ impl<'m> Layout<'m> {
     }
 
     /// A range; in a grid a list of points from end to end.
-    fn range(&mut self, draft: &Draft, input: usize, (from, to): (f64, f64), span: Span) {
+    fn range(
+        &mut self,
+        draft: &Draft,
+        input: usize,
+        (from, to): (f64, f64),
+        (kind, span): (Kind, Span),
+    ) -> Result<(), Diagnostic> {
         let before = self.ranges.len();
         self.ranges.push((input, from, to, span));
         if let Some((Fill::Grid(counts), _)) = &draft.fill {
@@ -160,7 +171,31 @@ impl<'m> Layout<'m> {
                     from + k as f64 * step
                 }
             });
-            self.list(input, points.collect());
+            let points: Vec<f64> = points.collect();
+            self.are_values_of(input, kind, &points, (from, to), span)?;
+            self.list(input, points);
+            return Ok(());
+        }
+        // A plan fills the whole range, between whole numbers too.
+        let between = [0.5];
+        self.are_values_of(input, kind, &between, (from, to), span)
+    }
+
+    /// Whether all points of a range are values that its parameter may have: an Integer has whole numbers alone.
+    fn are_values_of(
+        &self,
+        input: usize,
+        kind: Kind,
+        points: &[f64],
+        ends: (f64, f64),
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let name = &self.inputs[input].name;
+        match kind {
+            Kind::Real => Ok(()),
+            Kind::Boolean => Err(refused::range_of_boolean(name, span)),
+            Kind::Integer if points.iter().all(|point| point.fract() == 0.0) => Ok(()),
+            Kind::Integer => Err(refused::fractions_of_integer(name, &whole(ends), span)),
         }
     }
 
@@ -242,6 +277,22 @@ impl<'m> Layout<'m> {
         });
         Ok(())
     }
+}
+
+/// The whole numbers of a range as a list; of a long one the first of them.
+fn whole((from, to): (f64, f64)) -> String {
+    let (least, most) = (from.min(to).ceil(), from.max(to).floor());
+    let count = if most < least {
+        0.0
+    } else {
+        most - least + 1.0
+    };
+    let numbers = (0..count.min(LISTED) as usize).map(|k| (least + k as f64).to_string());
+    let mut numbers: Vec<String> = numbers.collect();
+    if count > LISTED {
+        numbers.push("…".to_owned());
+    }
+    format!("{{{}}}", numbers.join(", "))
 }
 
 /// Whether a number fits a parameter.

@@ -84,7 +84,7 @@ impl Model {
         places: &[usize],
         numbers: &[usize],
     ) -> Result<Tracked, ModeFitError> {
-        let pencil = Pencil::new(request.program, &self.parameters, &self.linear);
+        let pencil = Pencil::new(request.program, &self.linear);
         let eigen = numbers.iter().enumerate().map(|(at, &number)| {
             let found = pencil.eigen(self.modes[number].eigenvalue);
             found.ok_or(ModeFitError::Lost(at))
@@ -107,7 +107,7 @@ impl Model {
         places: &[usize],
         before: &Tracked,
     ) -> Result<Tracked, ModeFitError> {
-        let pencil = Pencil::new(request.program, &self.parameters, &self.linear);
+        let pencil = Pencil::new(request.program, &self.linear);
         let all: Vec<Option<Eigen>> = self
             .modes
             .iter()

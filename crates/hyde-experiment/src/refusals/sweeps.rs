@@ -15,6 +15,10 @@ diagnostics! {
         "this sweep has no `vary`"; at sweep, "no parameter changes from case to case";
         help "write `vary gap in 5 .. 50 [um];` and the number of points: `grid 10;`";
     }
+    fn varies_all_of(part: &str, here: Span) = error BadSweep {
+        "`vary` takes parameters by name, and `{part}.*` is not one"; at here, "in this sweep";
+        help "name each with its values, `vary {part}.k in 1 .. 2 [N/m];`, or write `vary uncertain;`: all that have a spread";
+    }
     fn not_one_number(plan: &str, here: Span) = error BadSweep {
         "`{plan}` takes one number"; at here, "how many cases?";
         help "write `{plan} 500;`";
@@ -81,6 +85,14 @@ diagnostics! {
     fn samples_structure(parameter: &str, range: Span) = error BadSweep {
         "`{parameter}` changes the structure of the equations: each value is compiled separately"; at range, "sampled";
         help "give it few values: `vary {parameter} = {{…, …}}`";
+    }
+    fn range_of_boolean(name: &str, range: Span) = error BadSweep {
+        "`{name}` is a Boolean and has no range"; at range, "it is `true` or `false`";
+        help "give it both values: `vary {name} = {{false, true}};`";
+    }
+    fn fractions_of_integer(name: &str, list: &str, range: Span) = error BadSweep {
+        "`{name}` is an Integer, and not all points of its range are whole numbers"; at range, "fractions would be run";
+        help "write whole numbers, `vary {name} = {list};`, or a `grid` whose points are whole numbers";
     }
     fn missing_table(here: Span) = error BadSweep {
         "the table of cases is missing"; at here, "named here";

@@ -43,6 +43,9 @@ impl Demand {
 /// The path of an instance, and its parameters with their dimensions: what a repair may name.
 pub(crate) type InScope<'s> = &'s dyn Fn(InstanceId) -> (InstancePath, Vec<(String, Dim)>);
 
+/// What disagrees, each with the two sides of it.
+pub(crate) type Disagreements = Vec<(Diagnostic, (ExprId, ExprId))>;
+
 /// All unknown dimensions and the constraints that wait for them.
 #[derive(Default)]
 pub(crate) struct Dimensions {
@@ -94,7 +97,17 @@ impl Dimensions {
     }
 
     /// Solves what the constraints determine, makes the rest pure numbers, and reports what disagrees.
-    pub(crate) fn solve(&mut self, in_scope: InScope<'_>) -> Vec<(Diagnostic, (ExprId, ExprId))> {
+    pub(crate) fn solve(&mut self, in_scope: InScope<'_>) -> Disagreements {
+        let mut found = self.propagate(in_scope);
+        while let Some(free) = self.first_free() {
+            self.solved[free] = Some(Dimension::DIMENSIONLESS);
+            found.extend(self.propagate(in_scope));
+        }
+        found
+    }
+
+    /// Solves for what is determined by what is known until now.
+    pub(crate) fn propagate(&mut self, in_scope: InScope<'_>) -> Disagreements {
         let mut found = Vec::new();
         loop {
             let mut progress = false;
@@ -128,11 +141,9 @@ impl Dimensions {
                 }
             }
             if !progress {
-                let Some(free) = self.first_free() else { break };
-                self.solved[free] = Some(Dimension::DIMENSIONLESS);
+                return found;
             }
         }
-        found
     }
 
     /// The dimension of an unknown after [`Dimensions::solve`].

@@ -88,7 +88,7 @@ pub(super) fn moment<'a>(
 
 /// How a value is shown: what stands alone in the unit that it is declared with.
 pub(super) fn shown_quantity(model: &mut Model<'_, '_>, typed: &Typed) -> Quantity {
-    let dimension = model.dimensions.resolve(&typed.dim).as_known();
+    let dimension = model.dimension_until_now(&typed.dim);
     let usual = Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS));
     let declared = quantity_of(&model.flat, typed.id).cloned();
     let known = declared.filter(|known| known.unit.text() != "1");

@@ -38,11 +38,8 @@ pub(super) fn measured<'a>(model: &mut Model<'a, '_>, channel: &'a Channel, root
     if dim.as_known().is_none() {
         dim = value.dim.clone();
     }
-    let dimension = model
-        .dimensions
-        .resolve(&dim)
-        .as_known()
-        .unwrap_or(Dimension::DIMENSIONLESS);
+    let dimension = model.dimension_until_now(&dim);
+    let dimension = dimension.unwrap_or(Dimension::DIMENSIONLESS);
     let written = &model.flat.variables[model.column_variables[&column].0].quantity;
     let quantity = if preparation.is_empty() && written.dimension == dimension {
         written.clone()

@@ -42,7 +42,7 @@ pub(super) fn declare_clocked<'a>(
         span: clocked.name.span,
     });
     model.tree.name(id, name, Member::Instance(part));
-    let modifiers = modifiers_for(model, name, &item.modifiers);
+    let modifiers = modifiers_for(model, (name, false), &item.modifiers);
     let collected: Vec<Collected<'a>> = clocked
         .elements
         .iter()

@@ -3,7 +3,9 @@
 use super::collect::Collected;
 use super::declarator::length;
 use super::effect::replaced;
-use super::modification::{Modifier, modifiers_for, modifiers_of};
+use super::modification::{
+    Modifier, check_components, modifiers_for, modifiers_for_components, modifiers_of,
+};
 use super::{Place, instantiate};
 use crate::instance::{InstanceId, Member, Position};
 use crate::model::Model;
@@ -36,7 +38,14 @@ pub(super) fn declare_component<'a>(
     }
     let count = length(model, id, &declaration.dims, &declarator.dims);
     let name = declarator.name.text.as_str();
-    let mut inner = modifiers_for(model, name, &item.modifiers);
+    let mut inner = match count {
+        Some(count) => {
+            let inner = modifiers_for_components(model, name, &item.modifiers);
+            check_components(model, count, &inner);
+            inner
+        }
+        None => modifiers_for(model, (name, false), &item.modifiers),
+    };
     modifiers_of(model, &declarator.changes, id, &mut inner);
     let by_effect = replaced(model, id, declaration, declarator, &mut inner);
     let class = by_effect.unwrap_or((file, class));
@@ -66,16 +75,12 @@ pub(super) fn declare_component<'a>(
         Some(count) => {
             let mut parts = Vec::new();
             for index in 0..count {
-                let mut own = inner.clone();
-                for modifier in &mut own {
-                    match modifier.each {
-                        0 => modifier.elements.push(Position {
-                            at: index,
-                            of: count,
-                        }),
-                        each => modifier.each = each - 1,
-                    }
-                }
+                let position = Position {
+                    at: index,
+                    of: count,
+                };
+                let own = inner.iter().filter_map(|m| m.of_component(position));
+                let own = own.collect();
                 let child = path.child(&format!("{name}[{}]", index + 1));
                 parts.push(instantiate(model, file, class, own, place(child)));
             }
@@ -95,7 +100,7 @@ fn redeclared<'a>(
 ) -> Option<(FileIndex, &'a Class)> {
     let redeclaration = modifiers.iter().find_map(|modifier| {
         let new = modifier.change.redeclare.as_ref()?;
-        modifier.target.is_empty().then_some((modifier, new))
+        modifier.is_of_itself().then_some((modifier, new))
     });
     let Some((modifier, new)) = redeclaration else {
         return Some(declared);

@@ -3,7 +3,7 @@
 use crate::instance::{InstanceId, Member};
 use crate::model::Model;
 use crate::refusals::instantiate as refused;
-use hyde_syntax::ast::{Declarator, Expr};
+use hyde_syntax::ast::{Declaration, Declarator, Expr};
 
 /// Whether nothing has its name yet; reported if something has.
 pub(super) fn free_name<'a>(
@@ -24,6 +24,11 @@ pub(super) fn free_name<'a>(
     };
     model.report(refused::declared_twice(&declarator.name, first));
     false
+}
+
+/// Whether the type or the name has dimensions.
+pub(super) fn is_array(declaration: &Declaration, declarator: &Declarator) -> bool {
+    !declaration.dims.is_empty() || !declarator.dims.is_empty()
 }
 
 /// The length that dimensions after the type or the name give.

@@ -66,7 +66,7 @@ fn effect<'a>(
     if model.tree.name(host, name, Member::Instance(id)).is_some() {
         model.report(refused::twice_on_a_site(name, &written(site), site.span));
     }
-    let mut modifiers = modifiers_for(model, name, of_host);
+    let mut modifiers = modifiers_for(model, (name, false), of_host);
     modifiers_of(model, changes, scope, &mut modifiers);
     note_modified(model, id, &modifiers);
     let mut collected = Vec::new();

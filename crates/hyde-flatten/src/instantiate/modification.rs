@@ -4,12 +4,35 @@ use crate::instance::{Binding, InstanceId, Position};
 use crate::model::Model;
 use crate::refusals::instantiate as refused;
 use hyde_diag::Span;
-use hyde_syntax::ast::{Change, Declarator, ExprKind};
+use hyde_syntax::ast::{Change, Declarator, Expr, ExprKind};
+
+/// A word of the way to what is modified.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Word<'a> {
+    pub(super) name: &'a str,
+    /// The component meant, of an array of them, from 1.
+    component: Option<Number>,
+}
+
+/// A number in brackets, and where it stands.
+#[derive(Clone, Copy)]
+struct Number {
+    value: usize,
+    span: Span,
+}
+
+impl PartialEq for Number {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
 
 /// A modification of something below an instance, with the scope its value stands in.
 #[derive(Clone)]
 pub(super) struct Modifier<'a> {
-    pub(super) target: Vec<&'a str>,
+    target: Vec<Word<'a>>,
+    /// The only component for which it is, of the array of them that its way has come to.
+    component: Option<Number>,
     pub(super) change: &'a Change,
     pub(super) scope: InstanceId,
     /// Given by the experiment, so that it can read the records' columns.
@@ -22,60 +45,134 @@ pub(super) struct Modifier<'a> {
     pub(super) number: usize,
 }
 
-/// The modifications of `name`, with it taken off their targets.
+impl<'a> Modifier<'a> {
+    /// Whether it is of the value or the model of what its way has come to.
+    pub(super) fn is_of_itself(&self) -> bool {
+        self.target.is_empty()
+    }
+
+    /// Whether another modification gives the same another value or model.
+    fn is_again(&self, other: &Self) -> bool {
+        let both = |gives: fn(&Change) -> bool| gives(self.change) && gives(other.change);
+        self.target == other.target
+            && (both(|change| change.value.is_some()) || both(|change| change.redeclare.is_some()))
+    }
+
+    /// The word that is left of its way, if it is one.
+    fn last_word(&self) -> Option<&'a str> {
+        match self.target.as_slice() {
+            [word] => Some(word.name),
+            _ => None,
+        }
+    }
+
+    /// The modification as it is for one component of an array of them; `None` if it is for another.
+    pub(super) fn of_component(&self, position: Position) -> Option<Self> {
+        let mut own = self.clone();
+        match own.component.take() {
+            Some(number) => return (number.value == position.at + 1).then_some(own),
+            None if own.each > 0 => own.each -= 1,
+            None => own.elements.push(position),
+        }
+        Some(own)
+    }
+}
+
+/// The modifications of `name`, which is no array of components but may be one of values, with it taken off their targets.
 pub(super) fn modifiers_for<'a>(
+    model: &mut Model<'a, '_>,
+    (name, is_array): (&str, bool),
+    modifiers: &[Modifier<'a>],
+) -> Vec<Modifier<'a>> {
+    let mut found = modifiers_for_components(model, name, modifiers);
+    found.retain(|modifier| {
+        let Some(number) = modifier.component else {
+            return true;
+        };
+        let way: Vec<&str> = modifier.target.iter().map(|word| word.name).collect();
+        model.report(match is_array {
+            true => refused::modifies_one_element((name, number.span), &way),
+            false => refused::element_of_no_array((name, number.span), &way),
+        });
+        model.making.modifications[modifier.number].2 = true;
+        false
+    });
+    found
+}
+
+/// The modifications of `name`, with it taken off their targets.
+pub(super) fn modifiers_for_components<'a>(
     model: &mut Model<'a, '_>,
     name: &str,
     modifiers: &[Modifier<'a>],
 ) -> Vec<Modifier<'a>> {
     let mut found = Vec::new();
-    for modifier in modifiers
-        .iter()
-        .filter(|modifier| modifier.target.first() == Some(&name))
-    {
-        let mut inner = modifier.clone();
-        inner.target.remove(0);
-        if inner.target.is_empty() {
-            model.making.modifications[inner.number].2 = true;
+    for modifier in modifiers {
+        let Some((first, rest)) = modifier.target.split_first() else {
+            continue;
+        };
+        if first.name != name {
+            continue;
         }
-        found.push(inner);
+        if rest.is_empty() {
+            model.making.modifications[modifier.number].2 = true;
+        }
+        found.push(Modifier {
+            target: rest.to_vec(),
+            component: first.component,
+            ..modifier.clone()
+        });
     }
     found
 }
 
-/// Nested changes as a list of single ones.
+/// Reports modifications of components that an array of them does not have.
+pub(super) fn check_components(
+    model: &mut Model<'_, '_>,
+    count: usize,
+    modifiers: &[Modifier<'_>],
+) {
+    let mut numbers: Vec<Number> = modifiers.iter().filter_map(|m| m.component).collect();
+    numbers.retain(|number| number.value == 0 || number.value > count);
+    for number in numbers {
+        model.report(refused::modifies_no_component(count, number.span));
+    }
+}
+
+/// Nested changes as a list of single ones. Those of one component of an array come before those of all.
 pub(super) fn modifiers_of<'a>(
     model: &mut Model<'a, '_>,
     changes: &'a [Change],
     scope: InstanceId,
     out: &mut Vec<Modifier<'a>>,
 ) {
-    modifiers_below(model, changes, scope, (&[], 0), out);
+    let mut own = Vec::new();
+    modifiers_below(model, changes, scope, (&[], 0), &mut own);
+    let of_all = |modifier: &Modifier<'_>| {
+        let mut words = modifier.target.iter();
+        words.all(|word| word.component.is_none())
+    };
+    own.sort_by_key(of_all);
+    for (number, modifier) in own.iter().enumerate() {
+        if let Some(first) = own[..number].iter().find(|first| first.is_again(modifier)) {
+            let (here, there) = (&modifier.change.target, first.change.target.span);
+            model.report(refused::modified_twice(here, there));
+        }
+    }
+    out.extend(own);
 }
 
 fn modifiers_below<'a>(
     model: &mut Model<'a, '_>,
     changes: &'a [Change],
     scope: InstanceId,
-    (above, each): (&[&'a str], usize),
+    (above, each): (&[Word<'a>], usize),
     out: &mut Vec<Modifier<'a>>,
 ) {
     for change in changes {
-        let mut parts = change.target.parts.iter();
-        if parts.any(|part| !part.subscripts.is_empty()) {
-            let inner = change.changes.first().map(|inner| &inner.target);
-            let chosen = change.redeclare.as_ref();
-            model.report(refused::modifies_one_element(&change.target, inner, chosen));
+        let Some(target) = way(model, above, change) else {
             continue;
-        }
-        let mut target = above.to_vec();
-        target.extend(
-            change
-                .target
-                .parts
-                .iter()
-                .map(|part| part.name.text.as_str()),
-        );
+        };
         let each = each + usize::from(change.each);
         modifiers_below(model, &change.changes, scope, (&target, each), out);
         if change.redeclare.is_some()
@@ -84,12 +181,14 @@ fn modifiers_below<'a>(
             || change.source.is_some()
         {
             let number = model.making.modifications.len();
+            let names: Vec<&str> = target.iter().map(|word| word.name).collect();
             model
                 .making
                 .modifications
-                .push((change.target.span, target.join("."), false));
+                .push((change.target.span, names.join("."), false));
             out.push(Modifier {
                 target,
+                component: None,
                 change,
                 scope,
                 records: false,
@@ -101,6 +200,54 @@ fn modifiers_below<'a>(
     }
 }
 
+/// The way to what a change is of; `None` if it is refused.
+fn way<'a>(
+    model: &mut Model<'a, '_>,
+    above: &[Word<'a>],
+    change: &'a Change,
+) -> Option<Vec<Word<'a>>> {
+    let mut target = above.to_vec();
+    for part in &change.target.parts {
+        let component = match part.subscripts.as_slice() {
+            [] => None,
+            [subscript] => {
+                if let Some(chosen) = &change.redeclare {
+                    model.report(refused::chooses_for_one(&change.target, chosen));
+                    return None;
+                }
+                let Some(value) = whole_number(subscript) else {
+                    model.report(refused::component_without_number(subscript.span));
+                    return None;
+                };
+                Some(Number {
+                    value,
+                    span: change.target.span,
+                })
+            }
+            [_, second, ..] => {
+                model.report(refused::component_without_number(second.span));
+                return None;
+            }
+        };
+        target.push(Word {
+            name: part.name.text.as_str(),
+            component,
+        });
+    }
+    Some(target)
+}
+
+fn whole_number(subscript: &Expr) -> Option<usize> {
+    if let ExprKind::Number(value, None) = subscript.kind
+        && value.fract() == 0.0
+        && (0.0..=1e9).contains(&value)
+    {
+        Some(value as usize)
+    } else {
+        None
+    }
+}
+
 /// Notes the instance that the last words of modifications are looked up in.
 pub(super) fn note_modified<'a>(
     model: &mut Model<'a, '_>,
@@ -109,7 +256,7 @@ pub(super) fn note_modified<'a>(
 ) {
     let last_words = modifiers
         .iter()
-        .filter(|modifier| modifier.target.len() == 1);
+        .filter(|modifier| modifier.last_word().is_some());
     model
         .making
         .modified
@@ -149,7 +296,7 @@ pub(super) fn binding<'a>(
 ) -> Option<Binding<'a>> {
     let modified = modifiers
         .iter()
-        .find(|modifier| modifier.target.is_empty() && modifier.change.value.is_some());
+        .find(|modifier| modifier.is_of_itself() && modifier.change.value.is_some());
     match modified {
         Some(modifier) => {
             let expr = modifier.change.value.as_ref()?;
@@ -184,7 +331,7 @@ pub(super) fn attribute<'a>(
 ) -> Option<Binding<'a>> {
     let modified = modifiers
         .iter()
-        .find(|modifier| modifier.target == [word] && modifier.change.value.is_some());
+        .find(|modifier| modifier.last_word() == Some(word) && modifier.change.value.is_some());
     if let Some(modifier) = modified {
         model.making.modifications[modifier.number].2 = true;
         let expr = modifier.change.value.as_ref()?;
@@ -228,14 +375,19 @@ pub(super) fn check_attributes<'a>(
     known: &[&str],
 ) {
     for modifier in modifiers {
-        if modifier.target.is_empty()
-            || matches!(modifier.target.as_slice(), [word] if known.contains(word))
-        {
+        let attribute = modifier
+            .last_word()
+            .is_some_and(|word| known.contains(&word));
+        if attribute || modifier.is_of_itself() {
             model.making.modifications[modifier.number].2 = true;
         }
     }
-    for change in &declarator.changes {
+    for (number, change) in declarator.changes.iter().enumerate() {
         let word = change.target.as_word();
+        let mut before = declarator.changes[..number].iter();
+        if let Some(first) = before.find(|first| first.target.as_word() == word) {
+            model.report(refused::modified_twice(&change.target, first.target.span));
+        }
         if word.is_none_or(|word| !known.contains(&word)) {
             let of = if known.contains(&"state") {
                 "variable"

@@ -1,7 +1,7 @@
 //! Parameters with their priors and sources.
 
 use super::collect::Collected;
-use super::declarator::{free_name, length};
+use super::declarator::{free_name, is_array, length};
 use super::modification::{attribute, binding, check_attributes, declared_bounds, modifiers_for};
 use super::quantity::{quantities_of, quantity};
 use super::variable::is_true;
@@ -65,8 +65,12 @@ fn declare_parameters<'a>(
             continue;
         }
         let name = declarator.name.text.as_str();
-        let modifiers = modifiers_for(model, name, &item.modifiers);
-        let outermost = modifiers.iter().find(|modifier| modifier.target.is_empty());
+        let modifiers = modifiers_for(
+            model,
+            (name, is_array(declaration, declarator)),
+            &item.modifiers,
+        );
+        let outermost = modifiers.iter().find(|modifier| modifier.is_of_itself());
         if let (true, Some(modifier)) = (has(Prefix::Final) || has(Prefix::Constant), outermost) {
             model.report(refused::modifies_final(
                 modifier.change.target.span,

@@ -1,7 +1,7 @@
 //! Variables with their kind, length and attributes.
 
 use super::collect::Collected;
-use super::declarator::length;
+use super::declarator::{is_array, length};
 use super::domain::field;
 use super::modification::{attribute, binding, check_attributes, declared_bounds, modifiers_for};
 use super::quantity::quantity;
@@ -25,7 +25,11 @@ pub(super) fn declare_variable<'a>(
 ) {
     let name = declarator.name.text.as_str();
     let has = |prefix| declaration.prefixes.contains(&prefix);
-    let modifiers = modifiers_for(model, name, &item.modifiers);
+    let modifiers = modifiers_for(
+        model,
+        (name, is_array(declaration, declarator)),
+        &item.modifiers,
+    );
     let binding = binding(id, declarator, &modifiers);
     let attribute =
         |model: &mut Model<'a, '_>, word: &str| attribute(model, id, declarator, &modifiers, word);

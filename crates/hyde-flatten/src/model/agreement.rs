@@ -2,12 +2,13 @@
 
 use super::Model;
 use crate::dimension::Dim;
-use crate::dimension::constraints::Demand;
+use crate::dimension::constraints::{Demand, Dimensions, Disagreements, InScope};
 use crate::instance::{InstanceId, Member, ParameterNotes, Typed};
 use crate::instantiate::InstanceTree;
 use crate::words::short;
 use hyde_diag::{Diagnostic, InstancePath, Severity, Span};
 use hyde_ir::{Expr, ExprId, FlatModel, Id as _, Quantity};
+use hyde_units::Dimension;
 
 impl Model<'_, '_> {
     /// Demands that two dimensions agree, and reports it if they cannot.
@@ -137,6 +138,18 @@ impl Model<'_, '_> {
 
     /// Solves the dimensions that are still unknown, and reports what disagrees.
     pub(crate) fn solve_dimensions(&mut self) {
+        self.solve_for_dimensions(Dimensions::solve);
+    }
+
+    /// The dimension of a value, as far as all that is lowered until now determines it.
+    pub(crate) fn dimension_until_now(&mut self, dim: &Dim) -> Option<Dimension> {
+        if self.dimensions.resolve(dim).as_known().is_none() {
+            self.solve_for_dimensions(Dimensions::propagate);
+        }
+        self.dimensions.resolve(dim).as_known()
+    }
+
+    fn solve_for_dimensions(&mut self, solve: fn(&mut Dimensions, InScope<'_>) -> Disagreements) {
         let Self {
             dimensions,
             tree,
@@ -144,7 +157,7 @@ impl Model<'_, '_> {
             flat,
             ..
         } = self;
-        let found = dimensions.solve(&|id| in_scope(tree, parameters, flat, id));
+        let found = solve(dimensions, &|id| in_scope(tree, parameters, flat, id));
         for (diagnostic, sides) in found {
             let diagnostic = self.with_parts(diagnostic, sides);
             self.report(diagnostic);

@@ -40,6 +40,10 @@ diagnostics! {
         at right, "has a variable without a unit, to this power";
         help "declare the variable with a type or a unit, and divide it by a reference value of that unit before it is raised: `(x/(1 [m]))^1.3`";
     }
+    fn difference_with_zero(here: Span, zero: &str, plain: &str) = warning ZeroPoint {
+        "a difference of temperatures is shown in a unit with a zero point of its own"; at here, "0 {plain} is shown as {zero}";
+        help "write `in [{plain}]`";
+    }
     fn turn_applied_twice(advance: Span, angle: Span) = warning AngleMismatch {
         "the factor 2*pi for one turn is applied twice";
         at advance, "2*pi times a quantity per radian: the advance of a turn";

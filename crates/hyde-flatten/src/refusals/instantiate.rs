@@ -88,22 +88,39 @@ diagnostics! {
     fn nothing_to_modify(name: &str, here: Span) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "changes nothing";
     }
-    /// `inner` is what is changed inside the element, if that is in parentheses; `chosen` is the model it is given.
-    fn modifies_one_element(
-        target: &Reference, inner: Option<&Reference>, chosen: Option<&Reference>,
-    ) = error UnknownModification {
-        "a modification cannot change one element of an array"; at target.span, "one element";
-        match (chosen, inner) {
-            (Some(chosen), _) => {
-                help "choose a model for all elements, `redeclare {} {}`, or declare the components one by one", chosen.dotted(), target.dotted();
+    /// `way` leads from the element to what is changed inside it, if that is in parentheses.
+    fn modifies_one_element((name, here): (&str, Span), way: &[&str]) = error UnknownModification {
+        "`{name}` is not an array of components: a modification cannot change one element of it"; at here, "one element";
+        match (way) {
+            [] => {
+                help "give each element its value: `{name} = {{…, …}}`; `--set` and `vary` set one element";
             }
-            (None, Some(inner)) => {
-                help "give each element its value: `{}({} = {{…, …}})`; `--set` and `vary` set one element", target.dotted(), inner.dotted();
-            }
-            (None, None) => {
-                help "give each element its value: `{} = {{…, …}}`; `--set` and `vary` set one element", target.dotted();
+            way => {
+                help "give each element its value: `{name}({} = {{…, …}})`; `--set` and `vary` set one element", way.join(".");
             }
         }
+    }
+    fn element_of_no_array((name, here): (&str, Span), way: &[&str]) = error UnknownModification {
+        "`{name}` is not an array"; at here, "has no elements";
+        match (way) {
+            [] => { help "write `{name} = …`"; }
+            way => { help "write `{name}({} = …)`", way.join("."); }
+        }
+    }
+    fn modified_twice(here: &Reference, first: Span) = error Duplicate {
+        "`{}` is modified twice", here.dotted(); at here.span, "here again"; at first, "here first";
+        help "remove one of the two";
+    }
+    fn modifies_no_component(count: usize, here: Span) = error UnknownModification {
+        "there are components 1 to {count}"; at here, "changes nothing";
+    }
+    fn component_without_number(here: Span) = error UnknownModification {
+        "a component that is modified is named by one number"; at here, "write a number, as in `car[2].M`";
+        help "for values that go with the number, give all components a list: `car(M = {{…, …}})`";
+    }
+    fn chooses_for_one(target: &Reference, chosen: &Reference) = error UnknownModification {
+        "a model cannot be chosen for one component of an array"; at target.span, "one component";
+        help "choose a model for all of them, `redeclare {} {}`, or declare the components one by one", chosen.dotted(), target.dotted();
     }
     fn no_element_to_modify(name: &str, here: Span, class: &str, known: &[&str]) = error UnknownModification {
         "there is no `{name}` to modify"; at here, "`{class}` has no such element";

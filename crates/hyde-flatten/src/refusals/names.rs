@@ -37,6 +37,8 @@ diagnostics! {
         "there is no `{word}` in {place}"; at here, "not known";
         match (nearest(word, known.iter().copied())) {
             _ if word == "Modelica" => { help "{}", hyde_syntax::instead_of(&whole.dotted()).unwrap_or_default(); }
+            _ if word == "True" || word == "TRUE" => { help "write `true`"; }
+            _ if word == "False" || word == "FALSE" => { help "write `false`"; }
             _ if word == "dt" => { help "the derivative of `x` by the time is `der(x)`"; }
             Some(near) => { help "did you mean `{near}`?"; }
             None if known.is_empty() => {}

@@ -118,7 +118,7 @@ impl Instance {
     /// Takes what is set and where the importer has come to.
     pub(super) fn place(&mut self) -> Result<()> {
         if self.pending {
-            let parameters = self.parameters();
+            let parameters = self.allowed_parameters()?;
             self.run()?
                 .with(|session| session.replace_parameters(parameters));
             self.pending = false;

@@ -105,6 +105,15 @@ impl Instance {
         }
     }
 
+    /// The whole parameter vector with what is set, where all of it is within its bounds: what importers set one after the
+    /// other may be so only together.
+    pub(super) fn allowed_parameters(&mut self) -> Result<Vec<f64>> {
+        let parameters = self.parameters();
+        let allowed = hyde_experiment::within_bounds(&self.model.program, &parameters);
+        allowed.map_err(|error| Refusal::Value(self.model.explain(&error)))?;
+        Ok(parameters)
+    }
+
     /// The whole parameter vector with what is set; what initial equations found stays.
     pub(super) fn parameters(&mut self) -> Vec<f64> {
         let mut values = self.model.set_places();

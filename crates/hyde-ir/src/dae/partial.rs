@@ -48,16 +48,19 @@ pub enum Function {
     Initial,
     /// What is delayed, as it is now.
     Delayed,
+    /// Arguments of the sines in root functions, which tell how many times these may turn in a step. They have no derivatives.
+    Angles,
 }
 
 impl Function {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Residual,
         Self::Roots,
         Self::Assignments,
         Self::Outputs,
         Self::Initial,
         Self::Delayed,
+        Self::Angles,
     ];
 }

@@ -159,6 +159,12 @@ pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
     if dae.exponential {
         line(&mut out, "an exponential grows".to_owned());
     }
+    if !dae.angles.is_empty() {
+        let _ = writeln!(out, "angles of root functions");
+    }
+    for &angle in &dae.angles {
+        line(&mut out, names.expr(angle));
+    }
     let _ = writeln!(out, "starts");
     for start in &dae.starts {
         let space = match start.place.space {
@@ -268,5 +274,6 @@ fn function_name(function: Function) -> &'static str {
         Function::Outputs => "outputs",
         Function::Initial => "initial equations",
         Function::Delayed => "delayed values",
+        Function::Angles => "angles",
     }
 }

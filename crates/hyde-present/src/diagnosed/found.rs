@@ -24,7 +24,7 @@ pub(super) fn curves(told: &Diagnosed<'_>) -> Vec<FoundCurve> {
         let curve = curve.as_ref()?;
         let kind = &curve.site.kind;
         let name = named(&told.hypotheses[finding.hypothesis]);
-        let sizes = verdict::quantity(&finding.size);
+        let sizes = verdict::sizes(finding);
         let dependence = match curve.share > 0.98 {
             true => String::new(),
             false => format!(

@@ -71,10 +71,8 @@ fn about(told: &Diagnosed<'_>) -> Vec<Section> {
 fn effects(told: &Diagnosed<'_>) -> Vec<[String; 4]> {
     let of = |finding: &hyde_calibrate::Finding| {
         let hypothesis = &told.hypotheses[finding.hypothesis];
-        let quantities: Vec<String> = std::iter::once(&finding.size)
-            .chain(&finding.shapes)
-            .map(verdict::quantity)
-            .collect();
+        let quantities = finding.told_sizes().iter().chain(&finding.shapes);
+        let quantities: Vec<String> = quantities.map(verdict::quantity).collect();
         let others: Vec<String> = finding
             .related(Relation::Another)
             .map(|other| verdict::alternative(told, other))
@@ -113,7 +111,13 @@ fn errors(told: &Diagnosed<'_>, record: &RecordErrors) -> RecordChange {
     let deviations = &told.calibration.observer.deviations;
     let measured = &told.calibration.compiled.program.experiment.measured;
     let channel = |(number, measured): (usize, &hyde_program::Measured)| {
-        let (unit, of) = error_in(&measured.unit, record.windows(number).after);
+        let innovations = record.innovations(number, deviations);
+        let windows = record.windows(number).after;
+        let typical = match windows.is_finite() {
+            true => windows,
+            false => innovations.after,
+        };
+        let (unit, of) = error_in(&measured.unit, typical);
         let change = |change: Change| ErrorChange {
             before: of.from_si(change.before),
             after: of.from_si(change.after),
@@ -123,7 +127,7 @@ fn errors(told: &Diagnosed<'_>, record: &RecordErrors) -> RecordChange {
         ChannelChange {
             name: measured.name.clone(),
             unit: shown(&unit).to_owned(),
-            innovations: change(record.innovations(number, deviations)),
+            innovations: change(innovations),
             windows: change(record.windows(number)),
             free: record.free(number).map(change),
             over_time: (

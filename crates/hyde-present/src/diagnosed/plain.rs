@@ -51,11 +51,12 @@ fn what(told: &Diagnosed<'_>, finding: &Finding) -> Vec<String> {
         (Some(_), "") => format!("The model lacks the effect {effect} at {site}."),
         (Some(_), doc) => format!("The model lacks {effect} at {site}: {doc}."),
     };
-    let size = &finding.size;
-    let mut told = vec![
-        first,
-        format!("Its size is {}, a 95 % interval.", verdict::quantity(size)),
-    ];
+    let sizes = verdict::sizes(finding);
+    let sizes = match finding.told_sizes().len() {
+        1 => format!("Its size is {sizes}, a 95 % interval."),
+        _ => format!("Its sizes are {sizes}, 95 % intervals."),
+    };
+    let mut told = vec![first, sizes];
     let shape = |own: &Quantity| match own.interval.0 < own.interval.1 {
         true => verdict::quantity(own),
         false => format!(
@@ -98,8 +99,12 @@ fn sure(told: &Diagnosed<'_>) -> Vec<String> {
         let half = (finding.size.interval.1 - finding.size.interval.0) / 2.0;
         let times = (finding.size.value / half).abs();
         if times.is_finite() && told.found.findings.len() == 1 {
+            let name = match finding.told_sizes().len() {
+                1 => "The size",
+                _ => &finding.size.name,
+            };
             said.push(format!(
-                "The size is {} times its uncertainty.",
+                "{name} is {} times its uncertainty.",
                 significant(times, 2)
             ));
         }
@@ -119,9 +124,8 @@ fn largest_change(told: &Diagnosed<'_>, held_out: bool) -> Option<String> {
     let of = |number: usize| -> Option<(&'static str, Change)> {
         let free = comparison::over(shown(), |record| record.free(number));
         let windows = || {
-            comparison::over(shown(), |record: &RecordErrors| {
-                Some(record.windows(number))
-            })
+            let known = shown().filter(|record| record.windows(number).after.is_finite());
+            comparison::over(known, |record: &RecordErrors| Some(record.windows(number)))
         };
         match free {
             Some(change) => Some(("the free run", change)),

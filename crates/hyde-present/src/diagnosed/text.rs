@@ -41,7 +41,7 @@ pub fn text(told: &Diagnosed<'_>) -> String {
 fn findings(out: &mut String, told: &Diagnosed<'_>) {
     for finding in &told.found.findings {
         let _ = writeln!(out, "\n  {}", named(&told.hypotheses[finding.hypothesis]));
-        for quantity in std::iter::once(&finding.size).chain(&finding.shapes) {
+        for quantity in finding.told_sizes().iter().chain(&finding.shapes) {
             let _ = writeln!(out, "    {}", verdict::quantity(quantity));
         }
         for other in finding.related(Relation::Another) {

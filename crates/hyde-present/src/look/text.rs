@@ -192,7 +192,7 @@ pub(super) fn of_channel(channel: &Channel) -> Vec<String> {
             significant(held.to_s, 6)
         ));
     }
-    if let Some(limit) = sampled.saturated {
+    for limit in sampled.saturated.iter().chain(&sampled.saturated_below) {
         found.push(format!(
             "saturated at {}{unit} in {}",
             significant(limit.value, 4),

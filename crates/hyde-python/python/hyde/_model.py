@@ -153,7 +153,7 @@ class Model:
         return self._study("bode", arguments, set)
 
     def margins(self, *arguments: str, set: Values = None) -> Study:
-        """Stability margins, as `hyde bode --margins --json`."""
+        """Stability margins, as `hyde bode --margins --json`; `margins("--cut", "SIGNAL")` opens a loop at another signal."""
         return self._study("bode", ("--margins", *arguments), set)
 
     def fit(

@@ -7,6 +7,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Union
 
+from ._hyde import Error
+
 File = Union[str, "PathLike[str]"]
 
 
@@ -17,8 +19,8 @@ class Page:
         self.html = html
 
     def save(self, path: File) -> None:
-        """Writes the page to a file."""
-        Path(path).write_text(self.html, encoding="utf-8")
+        """Writes the page to a file, `page.html`."""
+        Path(_ending(path, ".html", ".htm")).write_text(self.html, encoding="utf-8")
 
     def __repr__(self) -> str:
         return f"<hyde.Page of {len(self.html)} characters: save(PATH) writes it>"
@@ -26,6 +28,14 @@ class Page:
     def _repr_html_(self) -> str:
         style = "width:100%;height:36em;border:1px solid #8886"
         return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{escape(self.html)}"></iframe>'
+
+
+def _ending(path: File, *known: str) -> Path:
+    """The path, which may not promise another format than is written."""
+    path = Path(path)
+    if path.suffix and path.suffix.lower() not in known:
+        raise Error(f"`{path.name}`: this writes {known[0][1:].upper()}, so name the file `{path.with_suffix(known[0]).name}`")
+    return path
 
 
 class Plot:
@@ -36,7 +46,7 @@ class Plot:
 
     def save(self, path: File) -> None:
         """Writes `plot.svg`; further figures become `plot-2.svg`, `plot-3.svg`, …"""
-        path = Path(path)
+        path = _ending(path, ".svg")
         for number, svg in enumerate(self.svgs, start=1):
             own = path if number == 1 else path.with_name(f"{path.stem}-{number}{path.suffix}")
             own.write_text(svg, encoding="utf-8")

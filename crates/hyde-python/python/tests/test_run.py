@@ -53,6 +53,42 @@ def test_values_with_units_and_in_si_are_the_same(first: hyde.Model) -> None:
         first.run(set={"guide.G": 1.0})
 
 
+def test_values_are_those_that_a_parameter_may_have(tmp_path: Path) -> None:
+    model = tmp_path / "steps.hyde"
+    model.write_text(
+        """package steps;
+model A
+  parameter Integer n = 2;
+  parameter Boolean on = true;
+  parameter Real r(max = 10) = 1;
+  Real x(start = 1, fixed = true);
+  Real y = n + r + (if on then 1 else 0);
+equation
+  der(x) = 0;
+end A;
+experiment e of A
+  measure Real last = max(y);
+  solve ida(rtol = 1e-9) stop 1 [s];
+end e;
+end steps;
+"""
+    )
+    steps = hyde.load(model)
+    assert steps.run(set={"n": 3, "on": 0}).measures["last"] == 4.0
+    for values, why in (
+        ({"n": 2.7}, "an Integer is a whole number"),
+        ({"on": 5.0}, "`true` or `false`"),
+        ({"r": 11.0}, "`max` is 10"),
+        ({"r": float("nan")}, "finite"),
+        ({"r": float("inf")}, "finite"),
+        ({"x.start": 2.0}, "hyde.load"),
+    ):
+        with pytest.raises(hyde.Error, match=why):
+            steps.run(set=values)
+    with pytest.raises(hyde.Error, match="an Integer is a whole number"):
+        hyde.load(model, set={"n": 2.7})
+
+
 def test_structural_parameters_are_set_at_load(first: hyde.Model) -> None:
     assert first.parameters["screw.n"].structural
     with pytest.raises(hyde.Error, match="hyde.load"):
@@ -246,6 +282,11 @@ def test_a_run_is_drawn(first: hyde.Model, tmp_path: Path) -> None:
     assert "both" in svg
     plot.save(tmp_path / "plot.svg")
     assert (tmp_path / "plot.svg").read_text() == svg
+    with pytest.raises(hyde.Error, match="plot.svg"):
+        plot.save(tmp_path / "plot.pdf")
+    with pytest.raises(hyde.Error, match="page.html"):
+        run.page.save(tmp_path / "page.pdf")
+    assert not list(tmp_path.glob("*.pdf"))
     with pytest.raises(hyde.Error, match="panel of its own"):
         run.plot("table.s,table.v")
     with pytest.raises(hyde.Error, match="no column `table.x`"):

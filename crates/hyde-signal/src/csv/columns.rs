@@ -4,14 +4,14 @@ use super::ReadError;
 use super::facts::Period;
 use super::grid::Grid;
 use super::groups::Group;
-use super::number::{Numbers, Thousands, any_number, is_missing, not_a_number, plain, truth};
+use super::number::{Numbers, Thousands, any_number, is_missing, is_number, not_a_number, truth};
 use super::rows::Rows;
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::{Heading, Place};
 use crate::layout::{DeclaredColumn, Layout};
 use crate::statistics::median;
 use crate::texts::Texts;
-use crate::{Fault, Note, Table, TimeError, declared};
+use crate::{Fault, Note, Table, TimeError, contradicted, declared};
 
 /// The lines of so many missing readings are told.
 const MISSING_TOLD: usize = 6;
@@ -22,6 +22,8 @@ pub(super) struct Columns {
     groups: Vec<OfGroup>,
     numbers: Numbers,
     thousands_declared: bool,
+    /// The column that would be the time if no period were declared, and its cells.
+    passed_over: Option<(usize, Texts)>,
 }
 
 #[derive(Default)]
@@ -69,13 +71,49 @@ impl Columns {
                 .collect(),
             numbers: Numbers::of(decimal),
             thousands_declared: decimal.is_some(),
+            passed_over: None,
         }
+    }
+
+    /// The same for a sheet, whose cells are numbers or texts.
+    pub(super) fn of_sheet(self) -> Self {
+        Self {
+            numbers: self.numbers.exact(),
+            ..self
+        }
+    }
+
+    /// Keeps the cells of a column as they are written, though it is not the time.
+    pub(super) fn pass_over(&mut self, column: Option<usize>, rows: usize) {
+        self.passed_over = column.map(|at| (at, Texts::with_room(rows)));
+    }
+
+    /// What the time that a declared period passes over says otherwise.
+    pub(super) fn contradicted(
+        &mut self,
+        grid: &Grid<'_>,
+        period_s: f64,
+        place: &dyn Fn(usize) -> String,
+    ) -> Option<Note> {
+        let (at, texts) = self.passed_over.take()?;
+        let time = Raw {
+            heading: grid.headings[at].clone(),
+            cells: Cells::Texts(texts),
+        };
+        contradicted::told(&time, period_s, place)
     }
 
     /// Takes the cells of a row. A group may end before others: then all its cells are empty.
     pub(super) fn push(&mut self, rows: &Rows<'_>, headings: &[Heading]) -> Result<(), ReadError> {
         let count = rows.count().min(headings.len());
         let many = self.groups.len() > 1;
+        if let Some((at, texts)) = &mut self.passed_over {
+            let cell = rows.cell(*at);
+            match is_number(cell) {
+                true => texts.push(&self.numbers.plain(cell)),
+                false => texts.push(cell),
+            }
+        }
         for group in &mut self.groups {
             let own = group.group.first..group.group.end.min(count);
             if many && own.clone().all(|at| rows.cell(at).is_empty()) {
@@ -96,7 +134,7 @@ impl Columns {
                     let number = self.numbers.read(cell).is_some();
                     self.of[at].thousands.see(cell);
                     match number {
-                        true => group.instants.push(&plain(cell)),
+                        true => group.instants.push(&self.numbers.plain(cell)),
                         false => group.instants.push(cell),
                     }
                     continue;

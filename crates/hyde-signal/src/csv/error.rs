@@ -20,6 +20,8 @@ pub enum ReadError {
         line: u64,
         /// How many numbers it has.
         columns: usize,
+        /// Whether the first of them counts the rows.
+        counted: bool,
     },
     /// There is no line of that number to be the header.
     NoLine {
@@ -94,6 +96,15 @@ impl ReadError {
             Self::Empty => {
                 "write a header of `name [unit]` columns as the first line, time in the first: `t [s],x [mm]`".to_owned()
             }
+            Self::NoHeader {
+                columns,
+                counted: true,
+                ..
+            } => format!(
+                "say what its columns are and how far its rows are apart, which its first column counts: `record {record}(columns = \
+                 \"number, {}\") every 1 [ms]`",
+                columns_of(columns.saturating_sub(1))
+            ),
             Self::NoHeader { columns, .. } => format!(
                 "say what its columns are and how far its rows are apart: `record {record}(columns = \"{}\") every 1 [ms]`; \
                  or, where a column is the time, `record {record}(columns = \"t [s], {}\")`",
@@ -122,6 +133,9 @@ impl ReadError {
             ),
             Self::NoRun { found, .. } => format!("its runs are 1 to {found}: `record {record}(run = {found})`"),
             Self::NoRows => "write one row per sample below the header".to_owned(),
+            Self::Ragged { found, expected, .. } if found < expected => {
+                "give every row one cell per column, and the header no cell more".to_owned()
+            }
             Self::Ragged { .. } => {
                 "give every row one cell per column; a comma inside a number splits it into two cells".to_owned()
             }
@@ -194,11 +208,9 @@ impl fmt::Display for ReadError {
                 found,
                 expected,
             } => {
-                let cells = if *found == 1 { "cell" } else { "cells" };
-                write!(
-                    f,
-                    "line {line}: {found} {cells}, the header has {expected} columns"
-                )
+                let cells = hyde_units::counted(*found, "cell");
+                let columns = hyde_units::counted(*expected, "column");
+                write!(f, "line {line}: {cells}, the header has {columns}")
             }
             Self::Time(error) => error.fmt(f),
             Self::Table(error) => error.fmt(f),

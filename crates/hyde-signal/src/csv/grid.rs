@@ -131,6 +131,7 @@ impl<'a> Grid<'a> {
                         .iter()
                         .filter(|cell| !cell.is_empty())
                         .count(),
+                    counted: below.is_some_and(|below| counts(own, first.text, below.text)),
                 });
             };
             notes.push(Note::new(format!(
@@ -244,10 +245,14 @@ impl<'a> Grid<'a> {
         let last = head.above.len() - 1;
         let mut notes = Vec::new();
         let units = row_of_units(&head.above[last], head.separator, head.width)
-            .filter(|_| is_header(head, last - 1));
+            .filter(|units| is_header(head, last - 1) || names_by_number(head, last - 1, units));
         let meanings = row_of_meanings(head).filter(|_| units.is_none());
         let two = units.is_some() || meanings.is_some();
-        let names = (0..=last - usize::from(two)).rfind(|at| is_header(head, *at));
+        let by_number = |at: usize, units: &[String]| names_by_number(head, at, units);
+        let names = (0..=last - usize::from(two)).rfind(|at| {
+            let own = units.as_deref().filter(|_| at + 1 == last);
+            is_header(head, *at) || own.is_some_and(|units| by_number(*at, units))
+        });
         // A line of dashes may stand below the names; one with numbers is a row with something odd in it.
         let is_rule =
             |line: &Line| head.separator.split(line.text).len() == 1 && !is_number(line.text);
@@ -297,7 +302,8 @@ impl<'a> Grid<'a> {
             lines_above: head.first.number - 1,
             separator,
             remarks,
-            period: period(&facts, head.separator),
+            period: period(&facts, head.separator)
+                .map(|own| labview::in_seconds(own, &facts, head.separator)),
             kind: Kind::Preamble,
             notes,
         })
@@ -340,6 +346,13 @@ fn first_line(
         Some(separator) => Ok((Some(separator), plain.next().ok_or(ReadError::Empty)?)),
         None => Ok((None, first)),
     }
+}
+
+/// Whether the first column of two rows is a number of the row.
+fn counts(separator: Separator, row: &str, next: &str) -> bool {
+    let first = |line| separator.split(line).first()?.trim().parse::<i64>().ok();
+    let several = separator.split(row).len() > 1;
+    several && first(row).is_some_and(|row: i64| first(next) == Some(row.saturating_add(1)))
 }
 
 /// The columns that the cells of a header name.
@@ -407,6 +420,15 @@ fn is_header(head: &Head<'_>, at: usize) -> bool {
     let numbers = cells.iter().any(|cell| is_number(cell));
     let unnamed = cells.iter().take(head.width).filter(|cell| cell.is_empty());
     named == Some(head.width - 1) && !numbers && unnamed.count() <= 1
+}
+
+/// Whether a line names columns by number, `x-axis,1,2`, above a line in which each of them has its unit.
+fn names_by_number(head: &Head<'_>, at: usize, units: &[String]) -> bool {
+    let cells = head.separator.split(head.above[at].text);
+    let named = cells.len() == head.width && cells.iter().all(|cell| !cell.is_empty());
+    let first = cells.first().is_some_and(|cell| !is_number(cell));
+    let each = units.iter().all(|cell| matches!(of_row(cell), Some(Ok(_))));
+    named && first && each
 }
 
 fn with_units(

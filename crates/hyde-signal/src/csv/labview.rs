@@ -6,10 +6,12 @@
 //! X_Value       pos   cur   Comment
 //! ```
 
+use super::facts::Period;
 use super::head::Line;
 use super::separator::Separator;
 use crate::Note;
 use crate::heading::Heading;
+use hyde_units::{Dimension, NamedUnit};
 
 /// The header of the column of times.
 const TIMES: &str = "X_Value";
@@ -29,8 +31,7 @@ pub(super) fn with_units(
         lines.find(|(_, cells)| cells.first().is_some_and(|cell| cell == key))
     };
     let units = line("Y_Unit_Label");
-    let timed =
-        line("X_Dimension").is_some_and(|(_, cells)| cells.iter().any(|cell| cell == "Time"));
+    let timed = is_timed(above, separator) && !lacks_times(above, separator);
     let mut own = units.iter().flat_map(|(_, cells)| cells.iter().skip(1));
     let columns = columns
         .into_iter()
@@ -50,4 +51,33 @@ pub(super) fn with_units(
         ))
     });
     (columns, note)
+}
+
+/// The time between rows in s, where the file has no column of times: it gives `Delta_X` without a unit.
+pub(super) fn in_seconds(period: Period, above: &[Line<'_>], separator: Separator) -> Period {
+    let bare = period.unit.is_none() && period.key == "Delta_X";
+    match bare && lacks_times(above, separator) && is_timed(above, separator) {
+        true => Period {
+            unit: Some(NamedUnit::usual(Dimension::TIME)),
+            ..period
+        },
+        false => period,
+    }
+}
+
+/// Whether the dimension of its columns of `X_Value` is time.
+fn is_timed(above: &[Line<'_>], separator: Separator) -> bool {
+    says(above, separator, "X_Dimension", "Time")
+}
+
+/// Whether its `X_Value` is empty.
+fn lacks_times(above: &[Line<'_>], separator: Separator) -> bool {
+    says(above, separator, "X_Columns", "No")
+}
+
+fn says(above: &[Line<'_>], separator: Separator, key: &str, word: &str) -> bool {
+    above.iter().any(|line| {
+        let cells = separator.words(line.text);
+        cells.first().is_some_and(|cell| cell == key) && cells[1..].iter().any(|cell| cell == word)
+    })
 }

@@ -11,6 +11,8 @@ pub(super) struct Numbers {
     /// Whether it is the comma; nothing as long as all numbers are whole.
     comma: Option<bool>,
     both: bool,
+    /// The decimal sign that is declared.
+    declared: Option<char>,
     /// The first number with signs between its thousands, and its value.
     grouped: Option<(String, f64)>,
 }
@@ -21,12 +23,35 @@ impl Numbers {
         Self {
             comma: decimal.map(|sign| sign == ','),
             both: false,
+            declared: decimal,
             grouped: None,
+        }
+    }
+
+    /// The same for cells that a program wrote as numbers or texts: none has signs between its thousands.
+    pub(super) fn exact(self) -> Self {
+        Self {
+            declared: None,
+            ..self
+        }
+    }
+
+    /// A number in a cell with a point and without signs between its thousands.
+    pub(super) fn plain<'c>(&self, cell: &'c str) -> Cow<'c, str> {
+        match self.declared.and_then(|sign| in_groups(cell, sign)) {
+            Some(plain) => Cow::Owned(plain),
+            None => plain(cell),
         }
     }
 
     /// The number in a cell, if it is a finite one with the file's decimal sign.
     pub(super) fn read(&mut self, cell: &str) -> Option<f64> {
+        // With a declared decimal sign the other one can only stand between thousands.
+        if let Some(plain) = self.declared.and_then(|sign| in_groups(cell, sign)) {
+            let value = plain.parse().ok()?;
+            self.grouped.get_or_insert_with(|| (cell.to_owned(), value));
+            return Some(value);
+        }
         let Number {
             value,
             comma,
@@ -92,7 +117,7 @@ pub(super) fn grouping_sign(cell: &str) -> Option<char> {
 pub(super) fn is_missing(cell: &str) -> bool {
     let marks = [
         "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "inf", "+inf", "-inf",
-        "bad", "invalid",
+        "bad", "invalid", "#div/0!", "#value!", "#num!", "#ref!", "#null!", "#name?",
     ];
     let cell = cell.trim();
     marks.iter().any(|mark| cell.eq_ignore_ascii_case(mark)) || cell.contains(".#")
@@ -165,7 +190,10 @@ fn number(cell: &str) -> Option<Number> {
     {
         return Some(read(value, Some(true), false));
     }
-    let (plain, comma) = without_groups(cell)?;
+    if let Some(value) = fortran(cell).and_then(|cell| finite(&cell)) {
+        return Some(read(value, Some(false), false));
+    }
+    let (plain, comma) = without_groups(cell, None)?;
     Some(read(finite(&plain)?, comma, true))
 }
 
@@ -174,17 +202,28 @@ pub(super) fn plain(cell: &str) -> Cow<'_, str> {
     if decimal(cell).is_some() {
         return Cow::Borrowed(cell);
     }
-    match without_groups(cell) {
+    if let Some(plain) = fortran(cell) {
+        return Cow::Owned(plain);
+    }
+    match without_groups(cell, None) {
         Some((plain, _)) => Cow::Owned(plain),
         None if cell.contains(',') => Cow::Owned(cell.replace(',', ".")),
         None => Cow::Borrowed(cell),
     }
 }
 
+/// A double as Fortran writes it, `1.25D-03`, with the sign of an exponent that others read.
+fn fortran(cell: &str) -> Option<String> {
+    let (mantissa, exponent) = cell.split_once(['D', 'd'])?;
+    let digits = exponent.trim_start_matches(['+', '-']);
+    let whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+    (mantissa.contains('.') && whole).then(|| format!("{mantissa}e{exponent}"))
+}
+
 /// A number without the signs between its thousands, with a point, and whether its decimal sign is a comma: `1.234,5`,
 /// `1'234.5`, `1 234`. Points alone, or commas alone, may be decimal signs that were written wrongly, and are not taken for
-/// others.
-fn without_groups(cell: &str) -> Option<(String, Option<bool>)> {
+/// others, unless the decimal sign is declared.
+fn without_groups(cell: &str, declared: Option<char>) -> Option<(String, Option<bool>)> {
     let is_group = |c: char| matches!(c, '.' | ',' | '\'' | '’' | ' ' | '\u{a0}' | '\u{202f}');
     let digits = cell.trim_start_matches(['+', '-', '−']);
     let sign = digits.chars().find(|c| is_group(*c))?;
@@ -204,7 +243,8 @@ fn without_groups(cell: &str) -> Option<(String, Option<bool>)> {
         && others
             .iter()
             .all(|group| group.len() == 3 && all_digits(group));
-    let doubtful = decimal.is_none() && matches!(sign, '.' | ',');
+    let other = declared.is_some_and(|declared| declared != sign) && !first.starts_with('0');
+    let doubtful = decimal.is_none() && matches!(sign, '.' | ',') && !other;
     if !even || doubtful || !all_digits(decimals) {
         return None;
     }
@@ -216,6 +256,22 @@ fn without_groups(cell: &str) -> Option<(String, Option<bool>)> {
     let point = if decimal.is_some() { "." } else { "" };
     let plain = format!("{minus}{}{point}{decimals}", groups.concat());
     Some((plain, decimal.map(|(_, c)| c == ',')))
+}
+
+/// A number whose groups of three digits have the sign between them that is not the declared decimal sign: `3.000.000` and
+/// `1.234` where that is the comma.
+fn in_groups(cell: &str, decimal: char) -> Option<String> {
+    let other = if decimal == ',' { '.' } else { ',' };
+    let (plain, comma) = cell
+        .contains(other)
+        .then(|| without_groups(cell, Some(decimal)))??;
+    let own = comma.is_none_or(|comma| comma == (decimal == ','));
+    own.then_some(plain)
+}
+
+/// The number in a cell of a file with that decimal sign.
+pub(crate) fn number_with(decimal: char, cell: &str) -> Option<f64> {
+    Numbers::of(Some(decimal)).read(cell)
 }
 
 /// `TRUE` and `FALSE` as 1 and 0.
@@ -249,6 +305,19 @@ pub(super) fn not_a_number(line: u64, column: usize, name: &str, cell: &str) -> 
             message: format!("{place}: `{cell}` is not finite"),
             repair: "remove the row, or insert the correct value: Hyde does not guess values"
                 .to_owned(),
+        };
+    }
+    if let Some(decimal) = [',', '.']
+        .into_iter()
+        .find(|sign| in_groups(cell, *sign).is_some())
+    {
+        return Fault {
+            message: format!(
+                "{place}: `{cell}` is not a number unless signs stand between its thousands"
+            ),
+            repair: format!(
+                "say the decimal sign, though no number has decimals: `decimal = \"{decimal}\"`; or write thousands without a sign"
+            ),
         };
     }
     Fault {
@@ -289,6 +358,38 @@ mod tests {
             "1.234.56",
             ".234,5",
         ] {
+            assert!(!is_number(cell), "{cell}");
+        }
+        // With the decimal sign declared the other one stands between thousands.
+        for (decimal, cell, value) in [
+            (',', "3.000.000", Some(3e6)),
+            (',', "111.814", Some(111_814.0)),
+            (',', "-1.234,5", Some(-1234.5)),
+            (',', "0,5", Some(0.5)),
+            (',', "0.123", None),
+            (',', "1.5", None),
+            ('.', "3,000,000", Some(3e6)),
+            ('.', "111,814", Some(111_814.0)),
+            ('.', "111.814", Some(111.814)),
+            ('.', "1,5", None),
+        ] {
+            assert_eq!(number_with(decimal, cell), value, "{cell}");
+            if let Some(value) = value {
+                let numbers = Numbers::of(Some(decimal));
+                assert_eq!(numbers.plain(cell).parse(), Ok(value), "{cell}");
+            }
+        }
+        let fault = not_a_number(2, 2, "x", "3.000.000");
+        assert!(
+            fault.repair.contains("`decimal = \",\"`"),
+            "{}",
+            fault.repair
+        );
+        for (cell, value) in [("1.25D-03", 1.25e-3), ("-0.5d2", -50.0)] {
+            assert_eq!(Numbers::of(None).read(cell), Some(value), "{cell}");
+            assert_eq!(plain(cell).parse(), Ok(value), "{cell}");
+        }
+        for cell in ["12D3", "1.5D", "1.5D+", "abD1"] {
             assert!(!is_number(cell), "{cell}");
         }
         for (cell, value) in [("1.234", 1.234), ("1,234", 1.234), ("1e3", 1000.0)] {

@@ -11,7 +11,7 @@ use super::text::decoded;
 use crate::assemble::{Cells, Raw};
 use crate::heading::{Heading, Temporal, is_time_unit, temporal};
 use crate::layout::Layout;
-use crate::{Fault, Note, Table, TimeError, gaps, instants};
+use crate::{Fault, Note, Table, TimeError, contradicted, gaps, instants};
 
 /// Reads a record. Columns with a unit become SI; those without keep their values, see [`Column::with_unit`](crate::Column).
 ///
@@ -22,6 +22,19 @@ use crate::{Fault, Note, Table, TimeError, gaps, instants};
 /// # Errors
 /// The first mistake in the file, with its line.
 pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
+    read_cells(bytes, layout, |columns| columns)
+}
+
+/// The same for the text of a sheet, whose cells are numbers with a point, or texts.
+pub(crate) fn read_sheet(text: &str, layout: &Layout) -> Result<Table, ReadError> {
+    read_cells(text.as_bytes(), layout, Columns::of_sheet)
+}
+
+fn read_cells(
+    bytes: &[u8],
+    layout: &Layout,
+    kind: impl FnOnce(Columns) -> Columns,
+) -> Result<Table, ReadError> {
     let (text, note) = decoded(bytes, layout.encoding.as_deref())?;
     let mut grid = Grid::of(&text, layout)?;
     let mut notes: Vec<Note> = note
@@ -29,6 +42,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         .chain(std::mem::take(&mut grid.notes))
         .collect();
     let mut layout = layout.clone();
+    let declared_s = layout.every_s;
     if layout.every_s.is_none() {
         layout.every_s = said_period(&grid, &layout, &mut notes)?;
     }
@@ -42,7 +56,11 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     }
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
     let expected = expected_rows(&grid.rows, grid.headings.len());
-    let mut columns = Columns::of(&grid.headings, &groups, layout.decimal, expected);
+    let columns = Columns::of(&grid.headings, &groups, layout.decimal, expected);
+    let mut columns = kind(columns);
+    if declared_s.is_some() {
+        columns.pass_over(passed_over(&grid), expected);
+    }
     // Where the last row begins, and how many cells the first one has.
     let (mut before, mut width) = (None, None);
     while rows.advance()? {
@@ -66,6 +84,8 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     }
     notes.extend(columns.notes(&grid.headings));
     let place = |row: usize| format!("line {}", line_of(&grid, row));
+    let period_s = declared_s.filter(|period| *period > 0.0);
+    notes.extend(period_s.and_then(|period_s| columns.contradicted(&grid, period_s, &place)));
     columns.tables(&grid, &groups, &layout, notes, &place)
 }
 
@@ -160,6 +180,16 @@ fn first_cells(grid: &Grid<'_>) -> Vec<Vec<String>> {
     next().into_iter().chain(next()).collect()
 }
 
+/// The column that would be the time if no period were declared.
+fn passed_over(grid: &Grid<'_>) -> Option<usize> {
+    let mut cells = first_cells(grid).into_iter().next()?.into_iter();
+    let named = grid.headings.iter().cloned().map(|heading| Raw {
+        heading,
+        cells: Cells::Texts(cells.next().into_iter().collect()),
+    });
+    contradicted::passed_over(named.collect::<Vec<Raw>>().iter())
+}
+
 /// Whether the first column goes from row to row by so much: then it is the time, whatever it is called.
 fn advances_by(rows: &[Vec<String>], step: f64) -> bool {
     let first = |row: &Vec<String>| row.first().and_then(|cell| any_number(cell));
@@ -222,5 +252,7 @@ fn without_cells(heading: Heading) -> Raw {
     Raw { heading, cells }
 }
 
+#[cfg(test)]
+mod device_tests;
 #[cfg(test)]
 mod tests;

@@ -27,12 +27,12 @@ pub fn twincat(design: &Design) -> String {
         let cut = |value: f64| {
             let digits = (12.0 - value.abs().max(1e-300).log10().ceil()).clamp(0.0, 15.0);
             let unit = 10.0_f64.powi(digits as i32);
-            significant((value * unit).trunc() / unit, 12)
+            plain((value * unit).trunc() / unit, 12)
         };
         let _ = writeln!(
             out,
             "{};{};{};{};{}",
-            significant(design.time(row) * 1e3, 12),
+            plain(design.time(row) * 1e3, 12),
             digits(count, decimals),
             cut(one * last * rate),
             cut(two * last * rate * rate),
@@ -76,11 +76,11 @@ fn moves(out: &mut String, design: &Design, axis: char, per_unit: f64) {
         let _ = writeln!(
             out,
             "G1 {axis}{} F{}",
-            significant(rounded(to), 9),
-            significant(feed, 9)
+            plain(rounded(to), 9),
+            plain(feed, 9)
         );
         if leg.dwell_s > 0.0 {
-            let _ = writeln!(out, "G4 P{}", significant(rounded(leg.dwell_s), 6));
+            let _ = writeln!(out, "G4 P{}", plain(rounded(leg.dwell_s), 6));
         }
     }
     out.push_str("; G4 P is in seconds here; some controllers read milliseconds.\n");
@@ -105,7 +105,7 @@ fn points(out: &mut String, design: &Design, axis: char, per_unit: f64) {
             out,
             "G1 {axis}{} F{}",
             position(design, row, per_unit),
-            significant(rate, 9)
+            plain(rate, 9)
         );
     }
 }
@@ -118,10 +118,36 @@ fn position(design: &Design, row: usize, per_unit: f64) -> String {
         .unit
         .unit()
         .difference_to_si(counts[row] as f64 / 10.0_f64.powi(decimals));
-    significant(rounded(si * per_unit), 9)
+    plain(rounded(si * per_unit), 9)
 }
 
 /// To a tenth of a micrometre, of mm.
 fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
+}
+
+/// A number as controllers read it, with so many digits: in `X7e-4` the `E` would be another address.
+fn plain(value: f64, digits: usize) -> String {
+    let rounded = significant(value, digits);
+    rounded
+        .parse::<f64>()
+        .map_or(rounded, |value| value.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    #[test]
+    fn numbers_of_machine_code_have_no_exponent() {
+        for (value, expected) in [
+            (7e-4, "0.0007"),
+            (-1.25e-9, "-0.00000000125"),
+            (12_345_678.5, "12345678.5"),
+            (-0.0, "0"),
+            (100.0, "100"),
+        ] {
+            assert_eq!(plain(value, 9), expected);
+        }
+    }
 }

@@ -13,8 +13,10 @@ pub struct Sampled {
     pub noise: f64,
     /// The longest stretch with one value while the channel moves elsewhere.
     pub stuck: Option<Held>,
-    /// That it stands at the end of its range.
+    /// That it stands at the end of its range, the upper one if at both.
     pub saturated: Option<Limit>,
+    /// That it stands at the lower end too.
+    pub saturated_below: Option<Limit>,
     /// That it begins again.
     pub wraps: Option<Wrap>,
     /// Single readings far off those beside them, in s.
@@ -80,16 +82,17 @@ pub(super) fn sampled(time: &[f64], values: &[f64]) -> Sampled {
     let is_state = levels.len() <= STATES;
     let wraps = if is_state { None } else { wraps(values, range) };
     let moving = !is_state && wraps.is_none();
+    let mut limits = match moving {
+        true => saturated(values, range).into_iter(),
+        false => Vec::new().into_iter(),
+    };
     Sampled {
         range,
         step: if is_state { None } else { step(&levels) },
         noise: if is_state { 0.0 } else { noise(values) },
         stuck: if is_state { None } else { stuck(time, values) },
-        saturated: if moving {
-            saturated(values, range)
-        } else {
-            None
-        },
+        saturated: limits.next(),
+        saturated_below: limits.next(),
         wraps,
         spikes: if moving {
             spikes(time, values)
@@ -182,12 +185,15 @@ fn stuck(time: &[f64], values: &[f64]) -> Option<Held> {
     })
 }
 
-fn saturated(values: &[f64], range: (f64, f64)) -> Option<Limit> {
+/// The ends of the range at which a channel stands, the upper one first.
+fn saturated(values: &[f64], range: (f64, f64)) -> Vec<Limit> {
     let mut steps = sorted_steps(values);
     steps.retain(|step| *step > 0.0);
-    let usual = middle(&steps)?;
+    let Some(usual) = middle(&steps) else {
+        return Vec::new();
+    };
     let stretches = stretches(values);
-    [range.1, range.0].into_iter().find_map(|value| {
+    let limits = [range.1, range.0].into_iter().filter_map(|value| {
         let at_end = |(from, to): &&(usize, usize)| {
             values[*from].total_cmp(&value).is_eq() && to - from >= 3
         };
@@ -205,7 +211,8 @@ fn saturated(values: &[f64], range: (f64, f64)) -> Option<Limit> {
             before.max(slope(Some(to + 1), Some(to + 2))) > 0.3 * usual
         });
         (steep && samples >= 4).then_some(Limit { value, samples })
-    })
+    });
+    limits.collect()
 }
 
 fn wraps(values: &[f64], range: (f64, f64)) -> Option<Wrap> {
@@ -229,19 +236,28 @@ fn wraps(values: &[f64], range: (f64, f64)) -> Option<Wrap> {
         .iter()
         .find(|period| (first..=first + 2.0 * most + 1e-9 * span).contains(period));
     let times = jumps.len();
+    // What stands for readings beyond the range, such as 9.9E37, is one value; what begins again passes through many.
+    let middle = range.0 + 0.5 * span;
+    let above = |value: &&f64| **value > middle;
+    let one = |value: &f64, end: f64| value.total_cmp(&end).is_eq();
+    let stands_for = values.iter().filter(above).all(|v| one(v, range.1))
+        || values.iter().filter(|v| !above(v)).all(|v| one(v, range.0));
     // One jump alone may be a step of the channel, unless it is that of a counter or an angle.
     match period {
         Some(period) => Some(Wrap {
             period: *period,
             times,
         }),
-        None if times > 1 => Some(Wrap {
+        None if times > 1 && !stands_for => Some(Wrap {
             period: first + most,
             times,
         }),
         None => None,
     }
 }
+
+/// Instruments write 9.9E37 for readings beyond their range; no channel of a machine goes that far.
+const BEYOND: f64 = 1e30;
 
 /// Samples that differ from both neighbours, in one direction, by far more than others do.
 fn spikes(time: &[f64], values: &[f64]) -> Vec<f64> {
@@ -260,11 +276,12 @@ fn spikes(time: &[f64], values: &[f64]) -> Vec<f64> {
     let steps = sorted_steps(values);
     let step = steps.get(steps.len() * 95 / 100).copied().unwrap_or(0.0);
     let limit = (8.0 * usual).max(4.0 * step);
-    let far = all
-        .iter()
-        .enumerate()
-        .filter(|(_, off)| limit > 0.0 && **off > limit);
-    far.map(|(row, _)| time[row + 1]).collect()
+    let is_far = |row: usize| {
+        let off = row.checked_sub(1).and_then(|at| all.get(at));
+        limit > 0.0 && off.is_some_and(|off| *off > limit)
+    };
+    let far = (0..values.len()).filter(|&row| is_far(row) || values[row].abs() > BEYOND);
+    far.map(|row| time[row]).collect()
 }
 
 #[cfg(test)]
@@ -324,6 +341,18 @@ mod tests {
         let clipped: Vec<f64> = sine(1000).iter().map(|x| x.min(8.0)).collect();
         let limit = sampled(&times(1000), &clipped).saturated.unwrap();
         assert!((limit.value - 8.0).abs() < 1e-12 && limit.samples > 50);
+        let both: Vec<f64> = sine(1000).iter().map(|x| x.clamp(-6.0, 8.0)).collect();
+        let both = sampled(&times(1000), &both);
+        assert!((both.saturated.unwrap().value - 8.0).abs() < 1e-12);
+        assert!((both.saturated_below.unwrap().value + 6.0).abs() < 1e-12);
+        let mut overflown = sine(400);
+        (overflown[100], overflown[300], overflown[301]) = (9.9e37, 9.9e37, 9.9e37);
+        let overflown = sampled(&times(400), &overflown);
+        assert!(overflown.wraps.is_none());
+        assert_eq!(
+            overflown.spikes,
+            [times(400)[100], times(400)[300], times(400)[301]]
+        );
         let counter: Vec<f64> = (0..4000).map(|k| f64::from((k * 37) % 65_536)).collect();
         let wrap = sampled(&times(4000), &counter).wraps.unwrap();
         assert!((wrap.period - 65_536.0).abs() < 1e-9 && wrap.times == 2);

@@ -125,7 +125,10 @@ pub(super) fn of_name(column: &Column) -> Shown {
     let names = [Some(column.name()), column.meaning()];
     let words: Vec<String> = names.into_iter().flatten().flat_map(words).collect();
     let of_word = WORDS.iter().find_map(|(word, role)| {
-        let found = words.iter().find(|own| own.starts_with(word))?;
+        // An amplitude is one of anything.
+        let is =
+            |own: &&String| own.starts_with(word) && !(*word == "amp" && own.starts_with("ampl"));
+        let found = words.iter().find(is)?;
         Some((found, *role))
     });
     if let Some((word, role)) = of_word
@@ -160,9 +163,7 @@ pub(super) fn by_slopes(channels: &mut [Channel], slopes: &[Slope]) {
         else {
             continue;
         };
-        let why = |how: &str, other: &str| {
-            format!("{how} `{other}` (correlation {:.3})", slope.correlation)
-        };
+        let correlation = format!("(correlation {:.3})", slope.correlation);
         if matches!(channels[own].shown.role, Role::Unknown | Role::Speed)
             && matches!(channels[of].shown.role, Role::Unknown | Role::Position)
             && (!mutual
@@ -170,17 +171,66 @@ pub(super) fn by_slopes(channels: &mut [Channel], slopes: &[Slope]) {
                 || channels[own].shown.role == Role::Speed)
         {
             channels[own].shown.role = Role::Speed;
-            channels[own]
-                .shown
-                .why
-                .push(why("it is the slope of", &slope.of));
+            let other = &slope.of;
+            let why = match times_the_slope(slope, &channels[of], &channels[own]) {
+                Times::One => format!("it is the slope of `{other}` {correlation}"),
+                Times::MinusOne => {
+                    format!("it is the slope of `{other}` with the other sign {correlation}")
+                }
+                Times::Other(times) => {
+                    format!("it is {times} times the slope of `{other}` {correlation}")
+                }
+            };
+            channels[own].shown.why.push(why);
             channels[of].shown.role = Role::Position;
-            channels[of]
-                .shown
-                .why
-                .push(why("its slope is", &slope.slope));
+            let other = &slope.slope;
+            let why = match times_the_slope(slope, &channels[of], &channels[own]) {
+                Times::One => format!("its slope is `{other}` {correlation}"),
+                Times::MinusOne => {
+                    format!("its slope is `{other}` with the other sign {correlation}")
+                }
+                Times::Other(times) => {
+                    format!("`{other}` is {times} times its slope {correlation}")
+                }
+            };
+            channels[of].shown.why.push(why);
         }
         guess(channels, of, own, slope);
+    }
+}
+
+/// How many times the slope of a channel another one is, by the units of both.
+enum Times {
+    /// It is the slope; or a unit is not known, and its factor may be that of the unit.
+    One,
+    /// The same with the other sign.
+    MinusOne,
+    /// Another factor, as text.
+    Other(String),
+}
+
+/// By so much a factor may differ from 1: noise makes it less.
+const NEARLY: f64 = 0.03;
+
+fn times_the_slope(slope: &Slope, of: &Channel, own: &Channel) -> Times {
+    let si = |channel: &Channel| {
+        let unit = NamedUnit::parse(channel.unit.as_deref()?).ok()?.unit();
+        Some((unit.difference_to_si(1.0), unit.dimension))
+    };
+    let times = match (si(of), si(own)) {
+        (Some((of_si, dimension)), Some((own_si, speed)))
+            if dimension.divide(Dimension::TIME).agreement(speed) == Agreement::Same =>
+        {
+            slope.factor * own_si / of_si
+        }
+        (Some(_) | None, _) => slope.factor.signum(),
+    };
+    if (times - 1.0).abs() < NEARLY {
+        Times::One
+    } else if (times + 1.0).abs() < NEARLY {
+        Times::MinusOne
+    } else {
+        Times::Other(hyde_units::significant(times, 3))
     }
 }
 

@@ -7,7 +7,7 @@ use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::column::Written;
 use crate::frame::{Field, Values};
 use crate::heading::{Heading, Place};
-use crate::{Column, Fault, Layout, Table};
+use crate::{Column, Fault, Layout, Table, contradicted};
 use std::io;
 
 /// So many rows are in memory twice.
@@ -50,7 +50,8 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     let raw: Vec<Raw> = raw.collect();
     crate::declared::check(raw.iter(), &layout.columns).map_err(ReadError::Time)?;
     let place = |row: usize| format!("row {}", row + 1);
-    assemble(raw, layout, Vec::new(), &place).map_err(|error| match error {
+    let notes = contradicted::noted(&raw, layout.every_s, &place);
+    assemble(raw, layout, notes.into_iter().collect(), &place).map_err(|error| match error {
         AssembleError::Time(error) => ReadError::Time(error),
         AssembleError::Table(error) => ReadError::Table(error),
     })

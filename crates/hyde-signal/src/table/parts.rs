@@ -208,13 +208,20 @@ impl Table {
     }
 
     fn appended(self, later: &Self) -> Result<Self, Broken> {
-        let pairs = self.columns.iter().zip(&later.columns);
-        let columns: Result<Vec<Column>, Broken> = pairs
-            .map(|(own, later)| {
-                own.followed_by(later)
-                    .ok_or_else(|| Broken::Units(own.name().to_owned()))
-            })
-            .collect();
+        let columns = self.columns.iter().enumerate().map(|(at, own)| {
+            // The other file may have its columns in another order, and call its time otherwise.
+            let same = match (&self.time, &later.time) {
+                (Time::Column(time), Time::Column(other)) if *time == at => {
+                    later.columns.get(*other)
+                }
+                (Time::Column(_) | Time::Every(..), _) => {
+                    later.channels().find(|column| column.name() == own.name())
+                }
+            };
+            let whole = same.and_then(|later| own.followed_by(later));
+            whole.ok_or_else(|| Broken::Units(own.name().to_owned()))
+        });
+        let columns: Result<Vec<Column>, Broken> = columns.collect();
         let rows = self.with_columns(columns?).map_err(Broken::Table)?;
         Ok(Self {
             columns: rows.columns,

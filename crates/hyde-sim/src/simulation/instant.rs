@@ -111,6 +111,7 @@ impl Simulation<'_> {
             now: &mut now,
             conditions: &mut self.conditions,
             log: &mut self.results.events,
+            contradictions: &mut self.results.contradictions,
             sensitivities: self.followers.sensitivities.as_mut(),
             crossed: std::mem::take(&mut self.crossed),
             modes_are_given: self.modes_are_given,

@@ -24,6 +24,7 @@ impl Simulation<'_> {
         Ok(OperatingPoint {
             delayed: u[2 * self.program.columns.len()..].to_vec(),
             z: self.integrator.state().z.clone(),
+            p: self.integrator.state().p.clone(),
             t,
             y,
             yp,

@@ -11,6 +11,7 @@ use crate::past;
 use crate::results::Event;
 use crate::sensitivity::Cause;
 use crate::setup::same_instant;
+use crate::slide::margins;
 use crate::zero::contradicts;
 use hyde_program::Function;
 use hyde_signal::Series;
@@ -55,6 +56,13 @@ impl Simulation<'_> {
         self.restart()?;
         self.stand();
         Ok(())
+    }
+
+    /// The events at the start without the first ticks: the solver's vector and the memory behind them.
+    pub(crate) fn first_events(&mut self) -> Result<(Vec<f64>, Vec<f64>), Box<Failure>> {
+        self.settle()?;
+        let (state, now) = self.integrator.state_now();
+        Ok((now.y.to_vec(), state.z.clone()))
     }
 
     /// Goes on to a time. The steps are those of a whole run where they may pass it.
@@ -238,11 +246,23 @@ impl Simulation<'_> {
             .collect()
     }
 
-    /// Takes the caller's place as that of the run. Whether a relation has changed its truth on the way.
+    /// Takes the caller's place as that of the run. Whether a relation has changed its truth on the way, or a switch that
+    /// slides cannot go on.
     pub(crate) fn accept(&mut self) -> bool {
         self.integrator.now = self.pieces.place.clone();
         self.integrator.note_largest();
-        !self.passed().is_empty()
+        !self.passed().is_empty() || self.slides_end()
+    }
+
+    /// Whether the force that holds a switch at its surface would have to exceed that of one of its sides.
+    fn slides_end(&mut self) -> bool {
+        let (state, now) = self.integrator.state_now();
+        if state.slides.is_empty() {
+            return false;
+        }
+        let weights = state.weights(now);
+        let mut margins = weights.into_iter().flat_map(margins);
+        margins.any(|margin| margin < 0.0)
     }
 
     /// Events at the caller's place.

@@ -94,13 +94,18 @@ impl Simulation<'_> {
         if !self.integrator.state().delays.is_empty() {
             return Some(first);
         }
-        self.goes_on(before, now, &states)
+        self.goes_on(before, now, (&states, &growing))
             .map_or(Some(first), |changed| changed)
     }
 
     /// Whether the rates stay as they are where even changes lead in a long time: the first state whose rate does not, or no
     /// values there at all.
-    fn goes_on(&mut self, before: &Look, now: &Look, states: &[usize]) -> Option<Option<usize>> {
+    fn goes_on(
+        &mut self,
+        before: &Look,
+        now: &Look,
+        (states, growing): (&[usize], &[usize]),
+    ) -> Option<Option<usize>> {
         let along = |before: &[f64], now: &[f64]| -> Vec<f64> {
             let pairs = before.iter().zip(now);
             pairs
@@ -108,7 +113,11 @@ impl Simulation<'_> {
                 .collect()
         };
         let t = now.t + ONWARD * (now.t - before.t);
-        let (y, yp) = (along(&before.y, &now.y), now.yp.clone());
+        let (mut y, yp) = (along(&before.y, &now.y), now.yp.clone());
+        // What has settled changes by the errors of the solver alone, which lead nowhere.
+        for &i in states.iter().filter(|i| !growing.contains(i)) {
+            y[i] = now.y[i];
+        }
         let mut there = Moment { t, y, yp };
         let state = self.integrator.state_mut();
         state.z = along(&before.z, &now.z);

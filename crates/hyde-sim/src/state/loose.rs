@@ -53,7 +53,11 @@ impl State<'_> {
             Function::Outputs => self.replace_not_finite(at, out, |point, workspace, own| {
                 program.kernels.evaluate(function, point, workspace, own);
             }),
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {}
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {}
         }
     }
 

@@ -31,7 +31,7 @@ impl Equations for Ball {
             Function::Roots => vec![-h],
             Function::Assignments => vec![-at.p[LEFT] * v],
             Function::Outputs => vec![h, v],
-            Function::Initial | Function::Delayed => vec![],
+            Function::Initial | Function::Delayed | Function::Angles => vec![],
         }
     }
 
@@ -45,7 +45,7 @@ impl Equations for Ball {
             Function::Roots => vec![(0, Wrt::Unknown(0), -1.0)],
             Function::Assignments => vec![(0, Wrt::Unknown(1), -at.p[LEFT])],
             Function::Outputs => vec![(0, Wrt::Unknown(0), 1.0), (1, Wrt::Unknown(1), 1.0)],
-            Function::Initial | Function::Delayed => vec![],
+            Function::Initial | Function::Delayed | Function::Angles => vec![],
         }
     }
 

@@ -109,6 +109,7 @@ pub(crate) fn program(
         holds: Vec::new(),
         delays: Vec::new(),
         turning: 0,
+        angles: 0,
         exponential: false,
         timed: true,
         foreign: Vec::new(),

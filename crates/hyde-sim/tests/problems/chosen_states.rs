@@ -52,7 +52,11 @@ impl Equations for Pendulum {
                 vx * vx + vy * vy + x * ax + y * ay,
             ],
             Function::Outputs => vec![x, y, vx, vy, pull, at.z[0]],
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }
@@ -95,7 +99,11 @@ impl Equations for Pendulum {
                 .enumerate()
                 .map(|(row, unknown)| (row, Wrt::Unknown(unknown), 1.0))
                 .collect(),
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }

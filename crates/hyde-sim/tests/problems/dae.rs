@@ -42,7 +42,11 @@ impl Equations for Tank {
                 p[CUBIC] * q * q * q + p[SQUARE] * q * q + p[LINEAR] * q - x,
             ],
             Function::Outputs => at.y.to_vec(),
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }
@@ -61,7 +65,11 @@ impl Equations for Tank {
                 (2, Wrt::Unknown(0), -1.0),
             ],
             Function::Outputs => (0..3).map(|row| (row, Wrt::Unknown(row), 1.0)).collect(),
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }

@@ -30,7 +30,11 @@ impl Equations for Oscillator {
         match function {
             Function::Residual => vec![yp[0] - y[1], yp[1] + at.p[W_SQUARED] * y[0]],
             Function::Outputs => y.to_vec(),
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }
@@ -45,7 +49,11 @@ impl Equations for Oscillator {
                 (1, Wrt::Unknown(0), at.p[W_SQUARED]),
             ],
             Function::Outputs => vec![(0, Wrt::Unknown(0), 1.0), (1, Wrt::Unknown(1), 1.0)],
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }
@@ -58,7 +66,8 @@ impl Equations for Oscillator {
             | Function::Roots
             | Function::Assignments
             | Function::Initial
-            | Function::Delayed => {
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }

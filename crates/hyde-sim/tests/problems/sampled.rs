@@ -46,7 +46,11 @@ impl Equations for Loop {
         match function {
             Function::Residual => vec![at.yp[0] - at.z[HELD]],
             Function::Outputs => vec![at.y[0], at.z[COMPUTED], at.z[HELD]],
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }
@@ -56,7 +60,11 @@ impl Equations for Loop {
         match function {
             Function::Residual => vec![(0, Wrt::Derivative(0), 1.0)],
             Function::Outputs => vec![(0, Wrt::Unknown(0), 1.0)],
-            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+            Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed
+            | Function::Angles => {
                 vec![]
             }
         }

@@ -41,7 +41,7 @@ impl Equations for StickSlip {
             // No assignments, one pin.
             Function::Assignments => vec![0.0],
             Function::Outputs => vec![v, friction, at.z[MODE]],
-            Function::Initial | Function::Delayed => vec![],
+            Function::Initial | Function::Delayed | Function::Angles => vec![],
         }
     }
 
@@ -61,7 +61,9 @@ impl Equations for StickSlip {
             ],
             Function::Roots => vec![(0, Wrt::Unknown(2), 1.0), (1, Wrt::Unknown(1), -1.0)],
             Function::Outputs => vec![(0, Wrt::Unknown(1), 1.0), (1, Wrt::Unknown(2), 1.0)],
-            Function::Assignments | Function::Initial | Function::Delayed => vec![],
+            Function::Assignments | Function::Initial | Function::Delayed | Function::Angles => {
+                vec![]
+            }
         }
     }
 

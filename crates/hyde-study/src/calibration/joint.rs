@@ -273,7 +273,7 @@ fn own(
     found
 }
 
-/// The records of an experiment, those to fit first; a record that is named twice is reported.
+/// The records of an experiment, those to fit first; a record that is named twice, or fitted and held out, is reported.
 fn record_sets(
     plan: &CalibrationPlan,
     experiment: &Experiment,
@@ -288,17 +288,14 @@ fn record_sets(
                 let name = files.first().map_or_else(String::new, |(_, path)| {
                     called(asked.world.as_ref(), &path.to_string_lossy())
                 });
-                let known = found
-                    .iter()
-                    .find(|own| own.files == files && own.holdout == holdout);
-                if let Some(known) = known {
+                if let Some(known) = found.iter().find(|own| own.files == files) {
+                    let record = (&*name, &*experiment.name.text);
                     let word = if holdout { "holdout" } else { "fit" };
-                    loaded.diagnostics.push(refused::record_twice(
-                        (&name, &experiment.name.text),
-                        known.span,
-                        source.span,
-                        word,
-                    ));
+                    let (first, again) = (known.span, source.span);
+                    loaded.diagnostics.push(match known.holdout == holdout {
+                        true => refused::record_twice(record, first, again, word),
+                        false => refused::fitted_and_held_out(record, first, again),
+                    });
                     return found;
                 }
                 found.push(RecordSet {

@@ -3,7 +3,8 @@
 use crate::refusals::calibrations as refused;
 use hyde_calibrate::{CalibrationPlan, Per, Varied, Vary};
 use hyde_diag::Diagnostic;
-use hyde_program::{Given, Program};
+use hyde_program::{Given, Parameter, Program};
+use hyde_units::Kind;
 
 /// A parameter of a model that a calibration varies, and of what it has a value each.
 pub(super) type Own = (Varied, Option<Per>);
@@ -21,6 +22,15 @@ pub(super) fn varied(
         match vary {
             Vary::Uncertain(span) => {
                 let uncertain = Varied::uncertain(program, p);
+                let steps = program.parameters.iter().filter(|q| q.prior.is_some());
+                for (parameter, kind) in steps.filter_map(|q| Some((q, only_steps(q)?))) {
+                    let name = &parameter.name;
+                    wrong.push(refused::uncertain_step(
+                        (name, kind),
+                        *span,
+                        parameter.origin.span,
+                    ));
+                }
                 if uncertain.is_empty() && !elsewhere(None) {
                     wrong.push(refused::nothing_uncertain(*span));
                 }
@@ -33,6 +43,13 @@ pub(super) fn varied(
                 span,
             } => {
                 let mut own = Varied::of(program, name, p);
+                let known = program.parameter(name).map(|(parameter, _)| parameter);
+                if let Some((parameter, kind)) = known.and_then(|q| Some((q, only_steps(q)?)))
+                    && !parameter.is_final
+                {
+                    wrong.push(refused::varies_by_steps((name, kind), *span));
+                    continue;
+                }
                 let problem = match program.parameter(name) {
                     None if elsewhere(Some(name)) => None,
                     None => Some("no such parameter".to_owned()),
@@ -71,4 +88,14 @@ pub(super) fn varied(
         last.push(own);
     }
     last
+}
+
+/// What a parameter is that changes by whole steps alone, and does not change the equations.
+fn only_steps(parameter: &Parameter) -> Option<&'static str> {
+    match parameter.allowed.kind {
+        Kind::Real => None,
+        Kind::Integer | Kind::Boolean if parameter.structural => None,
+        Kind::Integer => Some("an Integer"),
+        Kind::Boolean => Some("a Boolean"),
+    }
 }

@@ -193,13 +193,17 @@ pub fn hypothesis(candidate: &Candidate) -> Hypothesis {
             shapes.position(|known| known.name == *shape)
         })
     };
+    let periodic = marked(&["position", "angle"]);
+    let mut marks = candidate.signature.iter();
+    let recurs = periodic.is_some() || marks.any(|(mark, _)| mark == "angle");
     Hypothesis {
+        recurs,
         effect: candidate.name().to_owned(),
         site: candidate.site.clone(),
         aliases: candidate.aliases.clone(),
         sizes: candidate.sizes.iter().map(knob).collect(),
         shapes: candidate.shapes.iter().map(knob).collect(),
-        periodic: marked(&["position", "angle"]),
+        periodic,
         resonant: marked(&["resonance"]),
     }
 }

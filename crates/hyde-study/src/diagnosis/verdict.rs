@@ -61,7 +61,13 @@ fn missing(told: &Diagnosed<'_>) -> String {
 
 /// `Stribeck at guide (dF = 12.1 ± 0.3 N)`, `Cogging at pulley.a or screw.b (…)`
 fn sized(told: &Diagnosed<'_>, finding: &Finding) -> String {
-    format!("{} ({})", at_places(told, finding), quantity(&finding.size))
+    format!("{} ({})", at_places(told, finding), sizes(finding))
+}
+
+/// `F1 = 12.1 ± 0.3 N, F2 = -3.2 ± 0.1 N`
+pub fn sizes(finding: &Finding) -> String {
+    let each = finding.told_sizes().iter().map(quantity);
+    each.collect::<Vec<_>>().join(", ")
 }
 
 /// An effect at all places where no record tells it from itself.

@@ -261,8 +261,8 @@ impl Bench {
         each.collect()
     }
 
-    /// How far positions of the axis go on a signal, and how fast: of each measured length or angle its name, its way from
-    /// end to end and its largest speed, SI. The run stops at the end of the signal.
+    /// How far positions of the axis go on a signal, and how fast: of each measured length or angle its unit, the farthest that
+    /// it is from where it starts, and its largest speed, SI. The run stops at the end of the signal.
     ///
     /// # Errors
     /// The run fails.
@@ -280,18 +280,16 @@ impl Bench {
             if !is_place || column.is_empty() {
                 return None;
             }
-            let (low, high) = column
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                    (low.min(*value), high.max(*value))
-                });
+            let start = column.first()?;
+            let away = column.iter().map(|value| (value - start).abs());
+            let farthest = away.fold(0.0, f64::max);
             let rows = run.results.time.windows(2).zip(column.windows(2));
             let speeds = rows.filter_map(|(time, value)| {
                 let step = time[1] - time[0];
                 // At an event there are two rows, and a few close by.
                 (step > 1e-6).then(|| ((value[1] - value[0]) / step).abs())
             });
-            Some((channel.unit.clone(), high - low, speeds.fold(0.0, f64::max)))
+            Some((channel.unit.clone(), farthest, speeds.fold(0.0, f64::max)))
         });
         Ok(found.collect())
     }

@@ -17,7 +17,7 @@ const MOST: f64 = 0.1;
 pub struct Room {
     /// A unit of the places: a length or an angle.
     pub unit: NamedUnit,
-    /// The way from end to end, SI, if it is limited.
+    /// The way from end to end, SI, if it is limited; the axis starts in its middle.
     pub travel: Option<f64>,
     /// The speed, SI, if it is limited.
     pub speed: Option<f64>,
@@ -56,11 +56,12 @@ impl Bench {
     fn load(&self, design: &Design, room: &Room) -> Result<f64, Failed> {
         let tables = self.tables(&design.values(), design.wish.step_s);
         let motions = self.motions(&tables)?;
-        let loads = motions.iter().filter_map(|(unit, way, speed)| {
+        // The axis starts in the middle of its travel.
+        let loads = motions.iter().filter_map(|(unit, away, speed)| {
             let (own, known) = (unit.unit().dimension, room.unit.unit().dimension);
             (own.agreement(known) == Agreement::Same).then(|| {
                 let load = |limit: Option<f64>, value: f64| limit.map_or(0.0, |l| value / l);
-                load(room.travel, *way).max(load(room.speed, *speed))
+                load(room.travel, 2.0 * away).max(load(room.speed, *speed))
             })
         });
         Ok(loads.fold(0.0, f64::max))

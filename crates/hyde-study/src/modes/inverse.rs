@@ -3,7 +3,7 @@
 use super::point::Prepared;
 use crate::{Refused, operating_point, run_failure};
 use hyde_experiment::{MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, fit_modes};
-use hyde_units::significant;
+use hyde_units::{Kind, significant};
 
 /// What was measured, and what is to be found.
 #[derive(Clone, Debug)]
@@ -52,6 +52,14 @@ pub fn fitted(
     (measured, numbers): (Vec<MeasuredMode>, Vec<usize>),
 ) -> Result<Found, Refused> {
     let program = &prepared.compiled.program;
+    if let Some(name) = vary.iter().find(|name| {
+        let known = program.parameter(name);
+        known.is_some_and(|(parameter, _)| parameter.allowed.kind != Kind::Real)
+    }) {
+        return Err(Refused::Asked(format!(
+            "`{name}` has no values between others, so it is not found by small steps: leave it out of `--vary`, and set it, `--set {name}=…`"
+        )));
+    }
     let request = ModeFitRequest {
         program,
         records: &prepared.tables,

@@ -44,6 +44,11 @@ diagnostics! {
         at again, "again here"; at first, "first here";
         help "name each record in one `{word}` only";
     }
+    fn fitted_and_held_out((record, experiment): (&str, &str), fitted: Span, held: Span) = error BadStudy {
+        "the record `{record}` of `{experiment}` is fitted, and held out as well";
+        at held, "held out here"; at fitted, "fitted here";
+        help "only records that the fit does not read test the model: name it in one of the two, or narrow the pattern of the other";
+    }
     fn no_label((parameter, label): (&str, &str), (record, here): (&str, Span), per: Span) = error BadStudy {
         "`{parameter}` has a value for each `{label}`, and `{record}` has no `{label}`";
         at here, "the value of `{label}` of these records is missing"; at per, "a value each";
@@ -86,6 +91,19 @@ diagnostics! {
     fn cannot_vary(parameter: &str, here: Span, why: &str) = error CannotVary {
         "`{parameter}` cannot be varied"; at here, "{why}";
         help "`hyde params FILE` lists the parameters";
+    }
+    fn varies_by_steps((parameter, kind): (&str, &str), here: Span) = error CannotVary {
+        "`{parameter}` cannot be varied: it is {kind}"; at here, "a fit moves a parameter by small steps";
+        help "leave it out here, and calibrate once for each of its values: `hyde fit FILE --set {parameter}=…`";
+    }
+    fn uncertain_step((parameter, kind): (&str, &str), here: Span, declared: Span) = error CannotVary {
+        "`{parameter}` is uncertain and cannot be varied: it is {kind}";
+        at here, "a fit moves a parameter by small steps"; at declared, "has a spread";
+        help "remove its `~`, and calibrate once for each of its values: `hyde fit FILE --set {parameter}=…`";
+    }
+    fn negative_noise(channel: &str, noise: &str, here: Span) = error CannotObserve {
+        "the noise of the channel `{channel}` is {noise}: a standard deviation is not negative"; at here, "measured here";
+        help "write it without the sign";
     }
     fn nothing_to_design(experiment: &str, study: Span) = error BadStudy {
         "no stimulus of `{experiment}` reads a column that is not measured"; at study, "requested by this study";

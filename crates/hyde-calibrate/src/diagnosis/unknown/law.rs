@@ -234,6 +234,9 @@ impl Law {
             law = format!("({law})");
         }
         text.push_str(&kind.clauses(&law, &|axis| self.reads(axis)));
+        let recurs = signature
+            .iter()
+            .any(|mark| mark.starts_with("position(") || mark.starts_with("angle"));
         if signature.is_empty() {
             signature.push("offset".to_owned());
         }
@@ -258,6 +261,7 @@ impl Law {
             shapes,
             periodic: None,
             resonant: None,
+            recurs,
         };
         (written, hypothesis)
     }

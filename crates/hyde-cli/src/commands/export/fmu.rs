@@ -131,7 +131,9 @@ fn reference(args: &FmuArgs, model: &Model, described: &Described<'_>) -> Result
     let run = driven.run(&names, rows, Arc::clone(&interrupted), reached);
     drop(watch);
     if interrupted.load(Ordering::Relaxed) {
-        return Err(Exit::Interrupted);
+        let reason =
+            "interrupted while it ran the experiment for the reference results: no FMU was written";
+        return Err(complain(&args.model, Exit::Interrupted, reason));
     }
     Ok(match run {
         Ok(run) => Ok(Some(Reference::of(

@@ -1,11 +1,14 @@
 //! `hyde export modelica`: the model as one flat class of Modelica.
 
 use super::identifier;
-use crate::args::ModelicaArgs;
+use crate::args::{ModelArgs, ModelicaArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Aim, Records, Told as _, complain, print_output};
-use hyde_modelica::written;
+use crate::project::{self, Aim, Project, Records, Told as _, complain, print_output};
+use hyde_experiment::{RunError, extent, parameters};
+use hyde_modelica::{Begun, written};
+use hyde_program::Program;
+use hyde_study::run_failure;
 use hyde_units::counted;
 use serde_json::json;
 use std::path::PathBuf;
@@ -31,7 +34,8 @@ fn left(args: &ModelicaArgs) -> Result<String, Exit> {
     let compiled = project.compile_or_report(own, Aim::Export)?;
     project.print_warnings(own);
     let name = identifier(&project);
-    let Some(class) = written(&mut project, &name) else {
+    let begun = begun(own, &mut project, &compiled.program)?;
+    let Some(class) = written(&mut project, &name, &begun) else {
         return Err(project.finish_with_errors(own));
     };
     let default = PathBuf::from(format!("{name}.mo"));
@@ -55,10 +59,38 @@ fn left(args: &ModelicaArgs) -> Result<String, Exit> {
     if columns > 0 {
         text.push_str("\n  columns of records are inputs of the class");
     }
+    for automaton in &compiled.program.automata {
+        if let Some(mode) = begun.memory.get(&automaton.place) {
+            text.push_str(&format!(
+                "\n  `{}` begins in `{}`, to which a run with these values goes at its start",
+                automaton.name, automaton.modes[*mode as usize]
+            ));
+        }
+    }
     for input in &compiled.program.experiment.differentiated {
         text.push_str(&format!(
             "\n  the equations need the derivative of `{input}`; it is 0 in the class"
         ));
     }
     Ok(text)
+}
+
+/// What events at the start of a run with the values of the class change.
+fn begun(own: &ModelArgs, project: &mut Project, program: &Program) -> Result<Begun, Exit> {
+    let tables = hyde_study::tables(&project.records);
+    let p = parameters(program, &tables, &project.set())
+        .map_err(|error| project.report_refused(own, program, &error))?;
+    let ((start_s, _), _) = extent(program, &tables, &p);
+    let moved = hyde_sim::moved_at_start(program, &tables, &p, start_s);
+    let moved = moved.map_err(|failure| {
+        let (diagnostic, fault) =
+            run_failure::diagnostic(&RunError::Failed(failure), program, None);
+        project.diagnostics.push(diagnostic);
+        project.finish_with_errors(own);
+        Exit::from(fault)
+    })?;
+    Ok(Begun {
+        states: moved.states,
+        memory: moved.memory,
+    })
 }

@@ -1,6 +1,6 @@
 //! `hyde export statespace`: the linearised model as matrices with names, for MATLAB, Octave, python-control, or as JSON.
 
-use super::identifier;
+use super::{identifier, no_arrays};
 use crate::args::StateSpaceArgs;
 use crate::commands::modes::prepared;
 use crate::exit::Exit;
@@ -55,6 +55,7 @@ fn written(args: &StateSpaceArgs) -> Result<String, Exit> {
     let form = args.out.as_deref().map(Form::of).transpose();
     let form = form.map_err(refused)?.unwrap_or(Form::Mat);
     let ready = prepared(&args.about, model, project::parsed(model)?, None)?;
+    no_arrays(&ready.compiled.program, &args.output).map_err(refused)?;
     let default = PathBuf::from(format!("{}.mat", identifier(&ready.project)));
     let found = state_space(ready, (&args.input, &args.output), args.open);
     let found = found.map_err(|own| project::refused(model, &own))?;

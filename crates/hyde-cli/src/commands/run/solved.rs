@@ -30,7 +30,12 @@ pub(crate) fn solved_of(
         ("rtol", args.rtol),
         ("atol", args.atol),
     ] {
-        if value.is_some_and(|value| value.is_nan() || value <= 0.0) {
+        // A record may begin below 0, and the run with it.
+        let least = match option {
+            "stop" if !project.records.is_empty() => f64::NEG_INFINITY,
+            _ => 0.0,
+        };
+        if value.is_some_and(|value| value.is_nan() || value <= least) {
             let reason = format!("`--{option}` must be positive");
             return Err(complain(&args.model, Exit::CommandLine, &reason));
         }

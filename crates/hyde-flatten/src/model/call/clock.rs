@@ -6,9 +6,10 @@ use crate::model::Model;
 use crate::model::call::delay::moves_with_counter;
 use crate::refusals::calls as refused;
 use crate::turns::Turns;
+use crate::zero::Zero;
 use hyde_diag::{MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
-use hyde_ir::{ClockId, Expr as Ir, ExprId, FlatModel, Index, Range, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr as Ir, ExprId, FlatModel, Id as _, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind, Reference};
 use hyde_units::Dimension;
 
@@ -88,7 +89,7 @@ impl<'a> Model<'a, '_> {
             }
             return self.poison(span);
         }
-        let inner = self.value(a, &scope.with(Setting::Clocked));
+        let inner = self.lower(a, &scope.with(Setting::Clocked));
         let clocks = clocks_of(&self.flat, inner.id);
         let [clock] = clocks.as_slice() else {
             self.report(refused::hold_of_several(clocks.len(), a.span));
@@ -120,12 +121,18 @@ impl<'a> Model<'a, '_> {
                     span,
                     MadeBy::Source,
                 );
+                self.flat.variables[held].boolean = inner.truth;
+                self.variables[held.index()].difference = inner.zero == Zero::Difference;
                 self.held.insert((clock, source), held);
                 held
             }
         };
         let id = self.flat.exprs.var(held);
-        self.typed(id, inner.dim, span)
+        Typed {
+            truth: inner.truth,
+            zero: inner.zero,
+            ..self.typed(id, inner.dim, span)
+        }
     }
 
     /// A continuous variable, and its name, if an expression is nothing but that.
@@ -172,6 +179,7 @@ impl<'a> Model<'a, '_> {
             span,
             MadeBy::Source,
         );
+        self.flat.variables[var].boolean = value.truth;
         let lhs = self.flat.exprs.var(var);
         let origin = self.tree.origin(scope.instance, span);
         let equation = Equation {

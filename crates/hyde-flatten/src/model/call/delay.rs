@@ -54,6 +54,7 @@ impl<'a> Model<'a, '_> {
         };
         Typed {
             truth: u.truth,
+            zero: u.zero,
             ..self.typed(id, u.dim, span)
         }
     }

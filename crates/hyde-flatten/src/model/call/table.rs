@@ -3,7 +3,8 @@
 //!
 //! Beyond its ends a table goes on along its last straight line. The smooth one is the monotone cubic of Fritsch and
 //! Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with the slopes of Fritsch and Butland: it does not overshoot its points.
-//! No events: a table is a measured curve, not a switch.
+//! No events: a table is a measured curve, not a switch. Over the time it has one at each of its points: between two steps that
+//! are both in a rest lies a whole pulse.
 
 mod file;
 
@@ -12,11 +13,14 @@ use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::refusals::calls as refused;
 use hyde_diag::Span;
-use hyde_ir::{BinaryOp, ExprArena, ExprId};
+use hyde_ir::{BinaryOp, Expr as Ir, ExprArena, ExprId};
 use hyde_syntax::ast::{Expr, ExprKind};
 
 /// Numbers in SI with their dimension.
 type Points = (Vec<f64>, Dim);
+
+/// Points of a table over the time that are events, at most.
+const MOST_EVENTS: usize = 1000;
 
 impl<'a> Model<'a, '_> {
     pub(super) fn table(
@@ -53,7 +57,10 @@ impl<'a> Model<'a, '_> {
         };
         let arena = &mut self.flat.exprs;
         let value = between(arena, x.id, &xs, &ys, slopes.as_deref());
-        let id = arena.no_event(value);
+        let id = match xs.len() <= MOST_EVENTS && is_of_time(arena, x.id) {
+            true => value,
+            false => arena.no_event(value),
+        };
         self.typed(id, y_dim, span)
     }
 
@@ -100,6 +107,17 @@ impl<'a> Model<'a, '_> {
         let dim = whole.map_or(Dim::NUMBER, |typed| typed.dim);
         Some((numbers, dim))
     }
+}
+
+/// Whether an expression is made of the time, and of nothing else that changes during a run.
+fn is_of_time(arena: &ExprArena, id: ExprId) -> bool {
+    let moves = |leaf: Ir| {
+        matches!(
+            leaf,
+            Ir::Var(..) | Ir::Der(..) | Ir::Pre(..) | Ir::Relation(_) | Ir::InMode(..)
+        )
+    };
+    arena.any(id, |leaf| leaf == Ir::Time) && !arena.any(id, moves)
 }
 
 /// The curve between points: the halves on both sides of the middle one, down to one piece.

@@ -50,6 +50,7 @@ impl<'a> Model<'a, '_> {
                         value.turns
                     },
                     difference: value.difference.map(|difference| -difference),
+                    zero: value.zero.of_opposite(),
                     ..value
                 }
             }
@@ -132,6 +133,7 @@ impl<'a> Model<'a, '_> {
                 Typed {
                     bare: a.bare && b.bare,
                     turns,
+                    zero: Zero::of_multiple(&a, &b),
                     ..self.typed(id, dim, span)
                 }
             }
