@@ -306,7 +306,7 @@ module.exports = grammar({
     in_mode: $ => seq(field('component', $.reference), '=', field('mode', $.identifier)),
 
     _study_item: $ => choice($.vary, $.setting),
-    vary: $ => seq('vary', choice(seq('effect', list($.effect_use)), list($.variation)), ';'),
+    vary: $ => seq('vary', choice(seq('effect', list($.effect_use)), list($.variation), $.wildcard), ';'),
     variation: $ => choice(
       seq('model', $.binding),
       seq(
