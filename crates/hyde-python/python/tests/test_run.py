@@ -70,7 +70,6 @@ experiment e of A
   measure Real last = max(y);
   solve ida(rtol = 1e-9) stop 1 [s];
 end e;
-end steps;
 """
     )
     steps = hyde.load(model)
