@@ -3,8 +3,8 @@
 //! After each step the root functions are evaluated at its end. Where they are arithmetic of the unknowns and the ends of
 //! the last steps show that they bend too little to reach zero between, that is all. Else they are evaluated at a few
 //! Chebyshev points of the step's interpolant as well, and in between where they bend enough to reach zero, or where a sine in
-//! them turns too far for that to be seen; a change of sign between two of them brackets a crossing, which is located on the interpolant. Where consistent values do not show
-//! it there, or where the step may have gone over a kink of a record, they are looked at over the whole step: the interpolant
+//! them turns too far for that to be seen; a change of sign between two of them brackets a crossing, which is located on the
+//! interpolant. Where consistent values do not show it there, or where the step may have gone over a kink of a record, they are looked at over the whole step: the interpolant
 //! of a force bends there to a crossing that there is not, or that is earlier or later.
 
 use crate::active::is_active;

@@ -9,7 +9,6 @@ use hyde_c::{FixedStep, Start, written};
 use hyde_experiment::{RunError, extent, parameters};
 use hyde_program::Program;
 use hyde_study::ports::chosen_outputs;
-use hyde_study::run_failure;
 use hyde_units::{counted, significant};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -48,13 +47,8 @@ fn left(args: &CArgs) -> Result<String, Exit> {
     let name = name(args.name.as_deref(), identifier(&project)).map_err(refused)?;
     let ((start_s, _), _) = extent(program, &tables, &p);
     let start = hyde_sim::known_start(program, &tables, &p, start_s, &[]);
-    let start = start.map_err(|failure| {
-        let (diagnostic, fault) =
-            run_failure::diagnostic(&RunError::Failed(failure), program, None);
-        project.diagnostics.push(diagnostic);
-        project.finish_with_errors(own);
-        Exit::from(fault)
-    })?;
+    let start = start
+        .map_err(|failure| project.report_refused(own, program, &RunError::Failed(failure)))?;
     // With what initial equations found: the code has them as numbers.
     let p = start.p;
     let start = Start {

@@ -8,7 +8,6 @@ use crate::project::{self, Aim, Project, Records, Told as _, complain, print_out
 use hyde_experiment::{RunError, extent, parameters};
 use hyde_modelica::{Begun, written};
 use hyde_program::Program;
-use hyde_study::run_failure;
 use hyde_units::counted;
 use serde_json::json;
 use std::path::PathBuf;
@@ -82,13 +81,8 @@ fn begun(own: &ModelArgs, project: &mut Project, program: &Program) -> Result<Be
         .map_err(|error| project.report_refused(own, program, &error))?;
     let ((start_s, _), _) = extent(program, &tables, &p);
     let moved = hyde_sim::moved_at_start(program, &tables, &p, start_s);
-    let moved = moved.map_err(|failure| {
-        let (diagnostic, fault) =
-            run_failure::diagnostic(&RunError::Failed(failure), program, None);
-        project.diagnostics.push(diagnostic);
-        project.finish_with_errors(own);
-        Exit::from(fault)
-    })?;
+    let moved = moved
+        .map_err(|failure| project.report_refused(own, program, &RunError::Failed(failure)))?;
     Ok(Begun {
         states: moved.states,
         memory: moved.memory,
