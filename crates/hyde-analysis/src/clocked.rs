@@ -180,10 +180,11 @@ fn report_unmatched(
     }
     for &var in unknowns {
         let determined = of_left.iter().flatten().any(|&right| nodes[right].0 == var);
-        if determined {
+        let variable = &dae.variables[var];
+        // An array without an element needs no equation.
+        if determined || variable.size() == 0 {
             continue;
         }
-        let variable = &dae.variables[var];
         let unset = match variable.input {
             true => refused::input_unset_at_ticks,
             false => refused::unset_at_ticks,

@@ -5,7 +5,8 @@ use crate::system::System;
 use hyde_diag::MadeBy;
 use hyde_ir::dae::{Alias, Dae, Output};
 use hyde_ir::flat;
-use hyde_ir::{Expr, Index, Quantity, Range, VariableKind};
+use hyde_ir::{BinaryOp, Expr, ExprId, Index, Quantity, Range, VariableKind};
+use std::collections::BTreeSet;
 
 /// Arrays longer than this are not reported element by element: more columns than a person looks at.
 const MAX_ELEMENTS: usize = 32;
@@ -106,6 +107,11 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
     }
     let experiment = &system.flat.experiment;
     dae.experiment = experiment.clone();
+    let mut reductions = std::mem::take(&mut dae.experiment.reductions);
+    for reduction in &mut reductions {
+        reduction.margins = margins(dae, reduction);
+    }
+    dae.experiment.reductions = reductions;
     let single = |name: String, value, quantity: &Quantity, discrete| Output {
         names: vec![name],
         range: Range::SCALAR,
@@ -147,6 +153,10 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         let name = "condition of a reduction".to_owned();
         dae.outputs.push(single(name, condition, &plain, false));
     }
+    for margin in dae.experiment.margins().collect::<Vec<_>>() {
+        let name = "margin of a reduction".to_owned();
+        dae.outputs.push(single(name, margin, &plain, false));
+    }
     for (name, value, quantity) in experiment.bodes.iter().flat_map(|bode| &bode.outputs) {
         dae.outputs
             .push(single(format!("response {name}"), *value, quantity, false));
@@ -179,4 +189,38 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
             dae.outputs.push(single(name.clone(), value, &plain, false));
         }
     }
+}
+
+/// a - b of each comparison of `a` with `b` in what a reduction reads, itself or through explicit scalars: those of equations that
+/// are events are relations by now.
+fn margins(dae: &mut Dae, reduction: &flat::Reduction) -> Vec<ExprId> {
+    let mut open: Vec<ExprId> = std::iter::once(reduction.value)
+        .chain(reduction.condition)
+        .collect();
+    let (mut seen, mut compared) = (BTreeSet::new(), Vec::new());
+    while let Some(root) = open.pop() {
+        for id in dae.exprs.below(&[root]) {
+            if let Expr::Binary(op, a, b) = dae.exprs[id] {
+                use BinaryOp::{Ge, Gt, Le, Lt};
+                if [Lt, Le, Gt, Ge].contains(&op) {
+                    compared.push((a, b));
+                }
+            } else if let Expr::Var(var, _) = dae.exprs[id]
+                && dae.variables[var].len.is_none()
+                && seen.insert(var)
+            {
+                let definitions = dae.definitions.iter();
+                let own = definitions.filter(|own| own.var == var && !own.slope);
+                open.extend(own.map(|own| own.value));
+            }
+        }
+    }
+    let margins = compared
+        .into_iter()
+        .map(|(a, b)| dae.exprs.binary(BinaryOp::Sub, a, b));
+    let mut margins: Vec<ExprId> = margins.collect();
+    margins.retain(|margin| dae.exprs.as_constant(*margin).is_none());
+    margins.sort_unstable();
+    margins.dedup();
+    margins
 }

@@ -24,18 +24,8 @@ pub fn parameter_slopes(dae: &mut Dae) -> Vec<Partial> {
     let mut list = Vec::new();
     for param in dae.parameter_order.clone() {
         let place = i32::try_from(dae.parameter_places[param]).unwrap_or(0);
-        let last = i32::try_from(dae.parameters[param].size()).unwrap_or(0) - 1;
-        let values = dae.parameters[param].value.clone();
-        if let ([value], 1..) = (values.as_slice(), last) {
-            let index = Index {
-                stride: 1,
-                offset: place,
-            };
-            slopes(dae, (Range { first: 0, last }, index, *value), &mut list);
-            continue;
-        }
-        for (value, row) in values.into_iter().zip(place..) {
-            slopes(dae, (Range::SCALAR, Index::fixed(row), value), &mut list);
+        for row in dae.parameters[param].rows(place) {
+            slopes(dae, row, &mut list);
         }
     }
     list

@@ -408,7 +408,7 @@ pub(crate) struct ModesArgs {
         long,
         value_name = "HZ[:RATIO],…",
         value_delimiter = ',',
-        conflicts_with = "at"
+        conflicts_with_all = ["at", "over", "with", "below", "real", "out"]
     )]
     pub(crate) measured: Vec<String>,
     /// The parameters to find: `--vary belt.k,screw.contact.k`

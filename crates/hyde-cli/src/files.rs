@@ -61,7 +61,7 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), String> {
     })
 }
 
-/// Writes a file beside its place and moves it there once it is complete.
+/// Writes a file beside its place and moves it there once it is complete: see [`write_with`].
 pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), String> {
     write_with(path, |file| file.write_all(content))
 }
@@ -108,11 +108,18 @@ fn takes_its_place(_: &tempfile::NamedTempFile, _: &std::fs::Metadata) -> bool {
     true
 }
 
-/// The same as [`write`] for a file that is made piece by piece.
+/// Makes a file piece by piece beside its place and moves it there once it is complete. A link stays, and the file that it
+/// leads to is made; what is no file, as a device or a pipe, gets the content itself, and so does the standard output.
 pub(crate) fn write_with(
     path: &Path,
     make: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>,
 ) -> Result<(), String> {
+    let at_once = opened_at_once(path).map_err(|error| cannot_write(path, &error))?;
+    if let Some(mut open) = at_once {
+        return make(&mut open).map_err(|error| cannot_write(path, &error));
+    }
+    let place = leads_to(path);
+    let path = place.as_path();
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
@@ -128,6 +135,51 @@ pub(crate) fn write_with(
     make_readable(&file).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
     sync_folder(folder)
+}
+
+/// What has to be written itself, opened: a device, a pipe, the standard output. Another file in its place would take it away.
+#[cfg(unix)]
+fn opened_at_once(path: &Path) -> std::io::Result<Option<std::fs::File>> {
+    use std::os::fd::AsFd as _;
+    use std::os::unix::fs::MetadataExt as _;
+    let Ok(facts) = std::fs::metadata(path) else {
+        return Ok(None);
+    };
+    if facts.is_dir() {
+        return Ok(None);
+    }
+    // What is already in the file that the standard output leads to stays before this.
+    let output = std::io::stdout().as_fd().try_clone_to_owned();
+    if let Ok(output) = output.map(std::fs::File::from) {
+        let own = output.metadata();
+        if own.is_ok_and(|own| (own.dev(), own.ino()) == (facts.dev(), facts.ino())) {
+            return Ok(Some(output));
+        }
+    }
+    if facts.is_file() {
+        return Ok(None);
+    }
+    std::fs::OpenOptions::new().write(true).open(path).map(Some)
+}
+
+#[cfg(not(unix))]
+fn opened_at_once(_: &Path) -> std::io::Result<Option<std::fs::File>> {
+    Ok(None)
+}
+
+/// Where links lead from a path, to a file that need not be there; the path itself where they go round.
+fn leads_to(path: &Path) -> PathBuf {
+    /// So many links one after the other lead nowhere.
+    const MOST: usize = 40;
+    let mut place = path.to_path_buf();
+    for _ in 0..MOST {
+        let Ok(next) = std::fs::read_link(&place) else {
+            return place;
+        };
+        // A link is read from the folder that it is in.
+        place = place.parent().unwrap_or(Path::new("")).join(next);
+    }
+    path.to_path_buf()
 }
 
 /// Removes what a process that was killed has left of files that it was writing, in a folder and in those below. Only who has
@@ -246,5 +298,30 @@ mod tests {
         let refused = rewrite(&own, b"four").unwrap_err();
         assert!(refused.ends_with("the file is read-only"), "{refused}");
         assert_eq!(std::fs::read(&second).unwrap(), b"three");
+    }
+    #[test]
+    fn a_link_stays_and_a_pipe_gets_the_content_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let (own, link, later) = (place("own.csv"), place("link.csv"), place("later.csv"));
+        std::fs::write(&own, "one").unwrap();
+        symlink("own.csv", &link).unwrap();
+        write(&link, b"two").unwrap();
+        assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(std::fs::read(&own).unwrap(), b"two");
+        // A link may lead to what is only made now, by way of another link.
+        symlink("far.csv", place("near.csv")).unwrap();
+        symlink("near.csv", &later).unwrap();
+        write(&later, b"three").unwrap();
+        assert!(std::fs::symlink_metadata(&later).unwrap().is_symlink());
+        assert_eq!(std::fs::read(place("far.csv")).unwrap(), b"three");
+        let pipe = place("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        let end = pipe.clone();
+        let reader = std::thread::spawn(move || std::fs::read(end).unwrap());
+        write(&pipe, b"four").unwrap();
+        assert_eq!(reader.join().unwrap(), b"four");
+        assert!(!std::fs::symlink_metadata(&pipe).unwrap().is_file());
     }
 }

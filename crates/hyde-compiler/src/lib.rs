@@ -2,6 +2,7 @@
 //!
 //! Start reading at [`compile`] in `pipeline.rs`.
 
+mod alone;
 mod diagnosis;
 mod emit;
 mod ideal;
@@ -18,6 +19,7 @@ mod write_back;
 mod write_values;
 mod written;
 
+pub use alone::{Alone, alone};
 pub use diagnosis::DiagnosisPlan;
 pub use emit::{Stage, emit, kernels_as_c};
 pub use hyde_analysis::beside_time;

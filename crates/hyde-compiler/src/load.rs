@@ -269,6 +269,12 @@ impl File {
         Some(path.dotted())
     }
 
+    /// Whether the user's file has a class: a model, connector, effect or function.
+    #[must_use]
+    pub fn has_classes(&self) -> bool {
+        self.items().any(|item| matches!(item, Item::Class(_)))
+    }
+
     /// The names of the models of the user's file.
     pub fn models(&self) -> impl Iterator<Item = &str> {
         self.items().filter_map(|item| match item {

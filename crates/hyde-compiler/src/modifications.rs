@@ -78,8 +78,8 @@ fn parted(path: &str) -> (&str, Option<usize>) {
 
 /// The elements of an array by their numbers, with the values they have.
 fn elements(array: &str, program: &Program, p: &[f64]) -> BTreeMap<usize, f64> {
-    let known = program.parameters.iter();
-    let parameter = known.clone().find(|known| known.name == array);
+    let mut known = program.parameters.iter();
+    let parameter = known.find(|known| known.name == array);
     let of = |parameter: &Parameter| {
         let places = parameter.place..parameter.place + parameter.len;
         (1..).zip(places.map(|place| p[place])).collect()

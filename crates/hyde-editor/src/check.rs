@@ -72,9 +72,9 @@ fn all(job: &Job) -> Vec<lsp_types::Diagnostic> {
     list
 }
 
-/// Whether a file has neither experiments nor models: types and functions alone.
+/// Whether a file has neither experiments nor classes: types alone.
 fn has_nothing(loaded: &Loaded) -> bool {
-    loaded.file.experiments().next().is_none() && loaded.file.models().next().is_none()
+    loaded.file.experiments().next().is_none() && !loaded.file.has_classes()
 }
 
 fn shown(

@@ -29,6 +29,7 @@ mod record;
 mod refusals;
 mod rows;
 mod run;
+mod run_error;
 mod sampled;
 mod state_space;
 mod stepped;
@@ -55,9 +56,10 @@ pub use modes::{NaturalMode, modes};
 pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
 pub use run::{
-    Incomplete, Options, Run, RunError, extent, incomplete, is_over_frequency, parameters, places,
+    Incomplete, Options, Run, extent, incomplete, is_over_frequency, parameters, places,
     record_value, rtol_of, run, run_again, setup, within_bounds,
 };
+pub use run_error::RunError;
 pub use sampled::{Clocked, Sampled};
 pub use state_space::{SampleTimes, StateSpace, StateSpaceSignal, state_space};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};

@@ -1,8 +1,8 @@
 //! The inverse of the modes: parameters from measured natural frequencies and dampings.
 //!
-//! Least squares over the logarithms of frequencies and the relative errors of damping ratios, each weighed with its
-//! spread, in the logarithms of the parameters: Gauss and Newton's method with the singular values of the weighed derivatives (Björck, Numerical Methods
-//! for Least Squares Problems, 1996, 9.2). A combination of parameters whose singular value is below 1 would have to change
+//! Least squares over the logarithms of frequencies and the relative errors of damping ratios (of one far below the measured
+//! one a logarithm), each weighed with its spread, in the logarithms of the parameters: Gauss and Newton's method with the
+//! singular values of the weighed derivatives (Björck, Numerical Methods for Least Squares Problems, 1996, 9.2). A combination of parameters whose singular value is below 1 would have to change
 //! by more than a factor e to be seen beyond the spread: it is left as it is, and told. Modes are paired with
 //! measurements by order at first; from step to step each is the one whose vectors fit.
 
@@ -11,7 +11,7 @@ mod tracked;
 use self::tracked::{Model, Tracked};
 use crate::linearize::LinearizeError;
 use crate::modes::NaturalMode;
-use crate::run::RunError;
+use crate::run_error::RunError;
 use hyde_program::Program;
 use hyde_signal::Table;
 use nalgebra::DVector;

@@ -1,14 +1,16 @@
 //! A run of an experiment: settings, tolerances and rows from the experiment and the command line, then the solution, then
 //! what it is compared with.
 
-use crate::compare::{self, Channel, CompareError};
-use crate::driven_kinds::{RowFault, check_columns};
+use crate::compare::{self, Channel};
+use crate::driven_kinds::check_columns;
 use crate::measures::{MeasureValue, measures};
+use crate::run_error::RunError;
 use hyde_program::{Column, Constant, Measured, Parameter, Program, RecordValue, RecordedResponse};
 use hyde_signal::Table;
 use hyde_sim::{Failure, Reached, Results, Setup};
 use hyde_units::Allowed;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -68,56 +70,8 @@ pub struct Incomplete {
     pub reason: String,
 }
 
-/// Why there is no run.
-#[derive(Clone, Debug)]
-pub enum RunError {
-    /// No parameter of that name.
-    NoParameter(String),
-    /// The parameter shapes the equations or may not be set: its name and why.
-    CannotSet(String, &'static str),
-    /// The value of a parameter is not allowed: its name and why.
-    NotAllowed(String, String),
-    /// A row of a record has a value that what it drives may not have.
-    Row(Box<RowFault>),
-    /// The parameter shapes the equations, or is a whole array: there is no gradient by it. Its name and why.
-    NoGradientBy(String, &'static str),
-    /// Neither the experiment nor the caller says when to stop.
-    NoStop,
-    /// The run would end before it starts, at the times in s; the record that it starts with.
-    EndsBeforeStart {
-        /// Start in s.
-        start_s: f64,
-        /// Stop in s.
-        stop_s: f64,
-        /// The record that begins at the start.
-        record: Option<String>,
-    },
-    /// A number that must be positive is not: which, and its value.
-    NotPositive(&'static str, f64),
-    /// More rows of results than fit anywhere.
-    TooManyRows {
-        /// The rows.
-        rows: f64,
-        /// The columns of each.
-        columns: usize,
-        /// The time in s that rows may be apart at least.
-        least_s: f64,
-    },
-    /// A measured channel cannot be compared.
-    Compare(CompareError),
-    /// A measure or expectation reads what is not a number: its name, the variable, and when first, in s.
-    NotANumber {
-        /// The measure's name, or the expectation as written.
-        measure: String,
-        /// The variable.
-        variable: String,
-        /// When first, in s.
-        t: f64,
-    },
-    /// The solver could not go on.
-    Failed(Box<Failure>),
-}
-
+/// How long runs last, in s: instants are located to 1e-12 s and 1e-12 of the time, and rounding reaches up to 1e-9.
+const LASTS_S: RangeInclusive<f64> = 1e-6..=1e12;
 /// Rows of the results at most, and numbers in all of them (3 GB).
 const MOST_ROWS: f64 = 2e7;
 const MOST_NUMBERS: f64 = 4e8;
@@ -257,6 +211,9 @@ pub fn setup<'r>(
     }
     if stop_s.is_infinite() {
         return Err(RunError::NotPositive("stop", stop_s));
+    }
+    if !LASTS_S.contains(&(stop_s - start_s)) {
+        return Err(RunError::Lasts(stop_s - start_s));
     }
     let every = options
         .every_s

@@ -5,7 +5,8 @@
 
 use crate::measures::MeasureValue;
 use crate::rows::EvenRows;
-use crate::run::{Options, RunError, run};
+use crate::run::{Options, run};
+use crate::run_error::RunError;
 use hyde_program::{Bode, Program};
 use hyde_signal::Table;
 use hyde_signal::spectrum::{Complex, harmonic_distortion, response_at};

@@ -163,11 +163,13 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     model.solve_dimensions();
     let (flat, dimensions) = (&mut model.flat, &model.dimensions);
     finish::drop_empty_equations(flat);
+    finish::single_elements(flat);
     finish::settle_variables(&mut flat.variables, &model.variables, dimensions);
     let columns = &model.column_variables;
     experiment::report_units_in_names(model.input, flat, columns, model.diagnostics);
     finish::settle_parameters(&mut flat.parameters, &model.parameters, dimensions);
     finish::order_parameters(flat, model.diagnostics);
+    finish::starts_of_found(flat);
     ledger::ports(model.input, &model.tree, flat);
     effect_words::check_effect_words(model);
     law_sites::find_law_sites(model);

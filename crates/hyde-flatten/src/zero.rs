@@ -7,7 +7,7 @@ use crate::instance::{Typed, VariableNotes};
 use crate::refusals::dimensions as refused;
 use crate::shown::quantity_of;
 use hyde_diag::{Diagnostic, Sources};
-use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
+use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Index, Quantity, VariableKind};
 use hyde_syntax::ast::UnitText;
 use hyde_units::{Dimension, Unit, significant};
 
@@ -42,6 +42,13 @@ impl Zero {
             _ if own => Self::Own,
             _ => Self::Open,
         }
+    }
+
+    /// The zero point of the difference of two values of one signal, `last(T) - first(T)` or `T[2] - T[1]`: both count from the
+    /// same one, whatever it is.
+    pub(crate) fn of_one_signal(flat: &FlatModel, (a, b): (ExprId, ExprId)) -> Option<Self> {
+        let same = signal(flat, a)? == signal(flat, b)?;
+        same.then_some(Self::Difference)
     }
 
     /// The zero point of a value with its sign changed.
@@ -85,6 +92,22 @@ impl Zero {
     }
 }
 
+/// The variable that is read, or of which a number of the whole run is made, or else the expression.
+fn signal(flat: &FlatModel, id: ExprId) -> Option<Expr> {
+    let (Expr::Var(var, _) | Expr::Pre(var, _)) = flat.exprs[id] else {
+        return None;
+    };
+    let VariableKind::Reduction(number) = flat.variables[var].kind else {
+        return Some(Expr::Var(var, Index::SCALAR));
+    };
+    let value = flat.exprs[flat.experiment.reductions.get(number)?.value];
+    Some(if let Expr::Var(var, _) = value {
+        Expr::Var(var, Index::SCALAR)
+    } else {
+        value
+    })
+}
+
 /// 0 K in a unit with a zero point: `-273.15 degC`.
 pub(crate) fn absolute_zero(unit: Unit, text: &UnitText) -> String {
     format!("{} {}", significant(unit.from_si(0.0), 7), text.text)
@@ -116,8 +139,13 @@ pub(crate) fn added_as_difference(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Opt
     ))
 }
 
-/// What to say of a literal in degC that a number multiplies: twice 10 degC are 566.3 K.
+/// What to say of a literal in degC that a number multiplies, twice 10 degC are 566.3 K, or that something without a temperature
+/// divides: `5 [degC]/(10 [s])` is 27.8 K/s.
 pub(crate) fn scaled(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnostic> {
+    if op == BinaryOp::Div && a.zero == Zero::Own && !is_number(b) && !is_open(b) {
+        let text = as_difference(a).filter(|_| !has_temperature(b));
+        return text.map(|text| refused::zero_point_counts("divided", a.span, &text));
+    }
     let of_literal = |(literal, number): (&Typed, &Typed)| {
         let may = literal.zero == Zero::Own && is_number(number);
         let text = may.then(|| as_difference(literal));
@@ -130,6 +158,16 @@ pub(crate) fn scaled(op: BinaryOp, (a, b): (&Typed, &Typed)) -> Option<Diagnosti
         span,
         &text,
     ))
+}
+
+fn is_open(value: &Typed) -> bool {
+    value.dim.as_known().is_none()
+}
+
+fn has_temperature(value: &Typed) -> bool {
+    let known = value.dim.as_known();
+    let exponents = known.and_then(Dimension::si_exponents);
+    exponents.is_none_or(|[.., kelvin, _, _, _]| kelvin != 0)
 }
 
 fn is_number(value: &Typed) -> bool {

@@ -62,7 +62,7 @@ operations! {
     Min "min" "The second where it is less, else the first." => |a, b| if b < a { b } else { a };
     Max "max" "The second where it is greater, else the first." => |a, b| if b > a { b } else { a };
     Atan2 "atan2" "Angle of the point (b, a)." => libm::atan2;
-    FloorTo "floor_to" "Largest multiple of b not above a: a quantiser, differentiated as the identity (S3)." => |a, b| (a / b).floor() * b;
+    FloorTo "floor_to" "Largest multiple of b not above a: a quantiser, differentiated as the identity (S3)." => |a, b| whole_below(a / b) * b;
     RoundTo "round_to" "Nearest multiple of b: a quantiser, differentiated as the identity (S3)." => |a, b| (a / b + 0.5).floor() * b;
     Lt "<" "1 where a < b, else 0." => |a, b| truth(a < b);
     Le "<=" "1 where a <= b, else 0." => |a, b| truth(a <= b);
@@ -97,6 +97,17 @@ pub fn sine_and_cosine(value: f64) -> (f64, f64) {
     libm::sincos(value)
 }
 
+/// The largest whole number not above a quotient. The quotient of a multiple is often rounded to below a whole number:
+/// 2 um/0.1 um is 19.999999999999996. So what four roundings can make of a whole number counts as that number.
+fn whole_below(quotient: f64) -> f64 {
+    let near = quotient.round();
+    if (quotient - near).abs() <= 4.0 * f64::EPSILON * quotient.abs() {
+        near
+    } else {
+        quotient.floor()
+    }
+}
+
 fn truth(condition: bool) -> f64 {
     f64::from(u8::from(condition))
 }
@@ -112,6 +123,29 @@ fn equal(a: f64, b: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn multiples_are_not_below_themselves() {
+        for step in [0.1, 1e-7, 1e-6, 2e-5 * std::f64::consts::TAU, 0.3] {
+            for k in -2000..2000 {
+                let multiple = f64::from(k) * step;
+                let between = (f64::from(k) + 0.999) * step;
+                assert_eq!(
+                    BinaryOp::FloorTo.apply(multiple, step).to_bits(),
+                    multiple.to_bits(),
+                    "{k}"
+                );
+                assert_eq!(
+                    BinaryOp::FloorTo.apply(between, step).to_bits(),
+                    multiple.to_bits(),
+                    "{k}"
+                );
+            }
+        }
+        // As text they are multiples too.
+        assert!((BinaryOp::FloorTo.apply(2e-6, 1e-7) - 2e-6).abs() < 1e-20);
+        assert!((BinaryOp::FloorTo.apply(-2e-6, 1e-7) + 2e-6).abs() < 1e-20);
+    }
 
     #[test]
     fn sine_and_cosine_together_are_what_each_is_alone() {

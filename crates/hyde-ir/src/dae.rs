@@ -5,6 +5,7 @@ mod arithmetic;
 mod clock;
 mod equation;
 mod event;
+mod guarded;
 mod initial;
 mod partial;
 mod place;

@@ -260,6 +260,8 @@ pub struct Reduction {
     pub value: ExprId,
     /// When it counts, as 1 or 0; none where always.
     pub condition: Option<ExprId>,
+    /// a - b of each comparison of `a` with `b` in both, once its outputs are reported.
+    pub margins: Vec<ExprId>,
     /// The variable that stands for the result; its name is the reduction as written.
     pub var: VarId,
 }
@@ -412,6 +414,12 @@ impl Experiment {
         self.reductions
             .iter()
             .filter_map(|reduction| reduction.condition)
+    }
+
+    /// The margins of the reductions, in their order.
+    pub fn margins(&self) -> impl Iterator<Item = ExprId> {
+        let reductions = self.reductions.iter();
+        reductions.flat_map(|reduction| reduction.margins.iter().copied())
     }
 }
 

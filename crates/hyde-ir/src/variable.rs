@@ -1,6 +1,6 @@
 //! Variables, parameters and record columns, as both stages hold them.
 
-use crate::ExprArena;
+use crate::expr::{ExprArena, Index, Range};
 use crate::id::{ClockId, ColumnId, DelayId, ExprId, VarId};
 use hyde_diag::{Origin, Span};
 use hyde_units::{Allowed, Dimension, Kind, NamedUnit};
@@ -291,6 +291,29 @@ impl Parameter {
     pub fn size(&self) -> usize {
         self.len.unwrap_or(1)
     }
+
+    /// What gives its elements, whose first lies at a place: one value serves all of them, and an array may have none.
+    #[must_use]
+    pub fn rows(&self, place: i32) -> Vec<(Range, Index, ExprId)> {
+        let size = i32::try_from(self.size()).unwrap_or(0);
+        match self.value.as_slice() {
+            [value] if size > 1 => {
+                let all = Range {
+                    first: 0,
+                    last: size - 1,
+                };
+                let index = Index {
+                    stride: 1,
+                    offset: place,
+                };
+                vec![(all, index, *value)]
+            }
+            values => (place..place + size)
+                .zip(values)
+                .map(|(at, &value)| (Range::SCALAR, Index::fixed(at), value))
+                .collect(),
+        }
+    }
 }
 
 /// A column of a record, or the same one row ahead.
@@ -310,4 +333,32 @@ pub struct Column {
     pub ticks_s: Option<f64>,
     /// The Integer or Boolean that it drives: its kind, its name, and where that is said. Every row must have such a value.
     pub drives: Option<(Kind, String, Span)>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Parameter, Quantity};
+    use crate::expr::{ExprArena, Index, Range};
+    use hyde_diag::{InstancePath, Origin, Sources, Span};
+
+    #[test]
+    fn one_value_serves_all_elements_also_where_there_are_none() {
+        let mut exprs = ExprArena::new();
+        let value = exprs.constant(3.0);
+        let here = Span::new(Sources::new().add("chain.hyde", "k"), 0, 1);
+        let origin = Origin::source(here, &InstancePath::root());
+        let mut parameter = Parameter::new("k".to_owned(), value, Quantity::number(), origin);
+        assert_eq!(parameter.rows(5), [(Range::SCALAR, Index::fixed(5), value)]);
+        parameter.len = Some(0);
+        assert_eq!(parameter.rows(5), []);
+        parameter.len = Some(1);
+        assert_eq!(parameter.rows(5), [(Range::SCALAR, Index::fixed(5), value)]);
+        parameter.len = Some(2);
+        let both = Range { first: 0, last: 1 };
+        let along = Index {
+            stride: 1,
+            offset: 5,
+        };
+        assert_eq!(parameter.rows(5), [(both, along, value)]);
+    }
 }

@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 
 /// Functions that operations call, which C has not.
 const FUNCTIONS: &str = "\
-static double hy_floor_to(double a, double b) { return floor(a / b) * b; }
+static double hy_floor_to(double a, double b) { double q = a / b; return (fabs(q - round(q)) <= 4 * 0x1p-52 * fabs(q) ? round(q) : floor(q)) * b; }
 static double hy_round_to(double a, double b) { return floor(a / b + 0.5) * b; }
 static double hy_min(double a, double b) { return b < a ? b : a; }
 static double hy_max(double a, double b) { return b > a ? b : a; }

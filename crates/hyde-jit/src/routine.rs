@@ -176,32 +176,14 @@ impl Routine {
     pub(crate) fn parameter(dae: &Dae, param: ParamId) -> Self {
         let place = i32::try_from(dae.parameter_places[param]).unwrap_or(0);
         let parameter = &dae.parameters[param];
-        let size = i32::try_from(parameter.size()).unwrap_or(0);
-        let steps = match parameter.value.as_slice() {
-            [value] if size > 1 => vec![Step {
-                range: Range {
-                    first: 0,
-                    last: size - 1,
-                },
-                slot: Slot::Out,
-                target: Index {
-                    stride: 1,
-                    offset: place,
-                },
-                value: *value,
-            }],
-            values => values
-                .iter()
-                .zip(place..)
-                .map(|(&value, at)| Step {
-                    range: Range::SCALAR,
-                    slot: Slot::Out,
-                    target: Index::fixed(at),
-                    value,
-                })
-                .collect(),
-        };
-        Self::plain(&parameter.name, steps)
+        let rows = parameter.rows(place).into_iter();
+        let steps = rows.map(|(range, target, value)| Step {
+            range,
+            slot: Slot::Out,
+            target,
+            value,
+        });
+        Self::plain(&parameter.name, steps.collect())
     }
 
     /// The name of the function of a part.

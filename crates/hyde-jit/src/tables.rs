@@ -6,7 +6,7 @@ use self::experiment::experiment;
 use crate::compiled::Compiled;
 use crate::delays::delays;
 use crate::{figures, ledger};
-use hyde_ir::dae::{self, Dae};
+use hyde_ir::dae::{self, Dae, Target};
 use hyde_ir::{ExprId, Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Clock, Column, Derivatives, ForeignPart, InitialCondition, Output, Parameter, Pin,
@@ -18,6 +18,7 @@ use std::sync::Arc;
 /// The program of compiled kernels.
 pub(crate) fn program(kernels: Compiled) -> Program {
     let dae = &kernels.dae;
+    let read = dae.read_by_conditions();
     Program {
         name: dae.name.clone(),
         unknowns: unknowns(dae),
@@ -43,6 +44,12 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             .iter()
             .map(|assignment| Assignment {
                 target: assignment.target,
+                counts: match assignment.target {
+                    Target::Memory(position) => {
+                        read.contains(&position) && dae.reads_memory(assignment.value)
+                    }
+                    Target::State(_) => false,
+                },
                 origin: assignment.origin.clone(),
             })
             .collect(),
@@ -219,6 +226,7 @@ fn outputs(dae: &Dae) -> Vec<Output> {
         - dae.experiment.measured.len()
         - dae.experiment.reductions.len()
         - dae.experiment.conditions().count()
+        - dae.experiment.margins().count()
         - dae
             .experiment
             .bodes

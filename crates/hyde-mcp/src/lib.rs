@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! server      JSON-RPC, one message a line: what is asked and answered        server.rs
+//! batch       several messages in a line                                   batch.rs
 //! tools       the tools with their arguments, as command lines                tools.rs
 //! digest      an answer without samples                                       digest.rs
 //! components  the component library                                           components.rs
@@ -11,6 +12,7 @@
 //!
 //! Protocol: <https://modelcontextprotocol.io/specification>, versions with `initialize`; one JSON object a line.
 
+mod batch;
 mod components;
 mod digest;
 mod server;
@@ -46,6 +48,6 @@ pub trait Host {
     /// It cannot be written.
     fn write(&self, folder: &str, name: &str, text: &str) -> Result<String, String>;
 
-    /// The folder for what a tool writes if it is told none.
-    fn folder(&self) -> String;
+    /// The folder for what a call of a tool writes if its arguments name none: one of its own for each call, counted from 1.
+    fn folder(&self, call: usize) -> String;
 }

@@ -1,5 +1,6 @@
 //! [`serve`]: JSON-RPC 2.0, one message a line: one thread reads and answers, another runs the tools one after the other.
 
+use crate::batch::{Batch, WITH_BATCHES};
 use crate::components::components;
 use crate::tools::{TOOLS, Tool};
 use crate::{Host, Ran, digest};
@@ -10,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 /// Versions of the protocol with `initialize`, the newest first.
-const VERSIONS: [&str; 4] = ["2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05"];
+const VERSIONS: [&str; 4] = ["2025-11-25", "2025-06-18", WITH_BATCHES, "2024-11-05"];
 
 const PARSE: i64 = -32700;
 const INVALID_REQUEST: i64 = -32600;
@@ -61,6 +62,8 @@ struct Call {
     id: Value,
     params: Map<String, Value>,
     cancelled: Arc<AtomicBool>,
+    /// The line of several messages that it is of.
+    batch: Option<Arc<Batch>>,
 }
 
 /// The calls without an answer yet, by the text of their id.
@@ -86,6 +89,7 @@ fn read(
     asked: &Asked,
     output: &Output<'_>,
 ) -> std::io::Result<()> {
+    let mut batches = false;
     loop {
         let mut line = Vec::new();
         let read = std::io::Read::take(&mut *input, LONGEST).read_until(b'\n', &mut line)?;
@@ -96,13 +100,37 @@ fn read(
             continue;
         }
         let answer = match serde_json::from_slice::<Value>(&line) {
-            Ok(message) => answer(&message, asked, calls),
+            Ok(Value::Array(messages)) if batches && !messages.is_empty() => {
+                answers(&messages, asked, calls)
+            }
+            Ok(message) => {
+                let reply = reply(&message, asked, calls, None);
+                if let Reply::Now(Some(answer)) = &reply
+                    && let Some(version) = answer["result"]["protocolVersion"].as_str()
+                {
+                    batches = version == WITH_BATCHES;
+                }
+                reply.now()
+            }
             Err(error) => Some(failed(&Value::Null, (PARSE, error.to_string()))),
         };
         if let Some(answer) = answer {
             write(output, &answer)?;
         }
     }
+}
+
+/// The answers to the messages of a line, unless tools must be waited for.
+fn answers(messages: &[Value], asked: &Asked, calls: &mpsc::Sender<Call>) -> Option<Value> {
+    let batch = Arc::new(Batch::of(messages.len()));
+    let each =
+        messages
+            .iter()
+            .filter_map(|message| match reply(message, asked, calls, Some(&batch)) {
+                Reply::Now(answer) => batch.take(answer),
+                Reply::Later => None,
+            });
+    each.last()
 }
 
 /// Runs the tools that were called. A call that the client has cancelled has no answer.
@@ -112,30 +140,62 @@ fn work(
     output: &Output<'_>,
     host: &(dyn Host + Sync),
 ) -> std::io::Result<()> {
-    for Call {
-        id,
-        params,
-        cancelled,
-    } in waiting
-    {
+    for (number, call) in (1..).zip(waiting) {
+        let Call {
+            id,
+            params,
+            cancelled,
+            batch,
+        } = call;
         let is_cancelled = || cancelled.load(Ordering::Relaxed);
         let result = match is_cancelled() {
             true => None,
-            false => Some(called(&params, host, &cancelled)),
+            false => Some(called(&params, host, number, &cancelled)),
         };
         asked.with(|known| known.remove(&id.to_string()));
-        if let Some(result) = result.filter(|_| !is_cancelled()) {
-            write(output, &answered(&id, result))?;
+        let result = result.filter(|_| !is_cancelled());
+        let answer = result.map(|result| answered(&id, result));
+        let answer = match batch {
+            Some(batch) => batch.take(answer),
+            None => answer,
+        };
+        if let Some(answer) = answer {
+            write(output, &answer)?;
         }
     }
     Ok(())
 }
 
-/// The answer to a message; a notification has none, and a call of a tool none yet.
-fn answer(message: &Value, asked: &Asked, calls: &mpsc::Sender<Call>) -> Option<Value> {
+/// The answer to a message.
+enum Reply {
+    /// An answer; a notification has none.
+    Now(Option<Value>),
+    /// A tool was called: its answer follows.
+    Later,
+}
+
+impl Reply {
+    /// What is written at once.
+    fn now(self) -> Option<Value> {
+        match self {
+            Self::Now(answer) => answer,
+            Self::Later => None,
+        }
+    }
+}
+
+/// The answer to a message, which may be one of several in its line.
+fn reply(
+    message: &Value,
+    asked: &Asked,
+    calls: &mpsc::Sender<Call>,
+    batch: Option<&Arc<Batch>>,
+) -> Reply {
     let Some(request) = message.as_object() else {
-        let fault = "a message is one JSON object a line".to_owned();
-        return Some(failed(&Value::Null, (INVALID_REQUEST, fault)));
+        let fault = format!(
+            "a message is one JSON object a line; only version {WITH_BATCHES} of the protocol has several in a line"
+        );
+        return Reply::Now(Some(failed(&Value::Null, (INVALID_REQUEST, fault))));
     };
     let empty = Map::new();
     let params = request.get("params").and_then(Value::as_object);
@@ -150,11 +210,11 @@ fn answer(message: &Value, asked: &Asked, calls: &mpsc::Sender<Call>) -> Option<
                 call.inspect(|call| call.store(true, Ordering::Relaxed));
             });
         }
-        return None;
+        return Reply::Now(None);
     };
     let Some(method) = request.get("method").and_then(Value::as_str) else {
         let fault = "a request has a `method`".to_owned();
-        return Some(failed(id, (INVALID_REQUEST, fault)));
+        return Reply::Now(Some(failed(id, (INVALID_REQUEST, fault))));
     };
     let result = match method {
         "initialize" => Ok(initialized(params)),
@@ -167,14 +227,15 @@ fn answer(message: &Value, asked: &Asked, calls: &mpsc::Sender<Call>) -> Option<
                 id: id.clone(),
                 params: params.clone(),
                 cancelled,
+                batch: batch.cloned(),
             };
             // There is a worker as long as answers can be written.
             let _sent = calls.send(call);
-            return None;
+            return Reply::Later;
         }
         other => Err((NO_METHOD, format!("no method `{other}`"))),
     };
-    Some(answered(id, result))
+    Reply::Now(Some(answered(id, result)))
 }
 
 fn answered(id: &Value, result: Result<Value, Fault>) -> Value {
@@ -219,6 +280,7 @@ fn listed() -> Vec<Value> {
 fn called(
     params: &Map<String, Value>,
     host: &dyn Host,
+    number: usize,
     cancelled: &AtomicBool,
 ) -> Result<Value, Fault> {
     let name = params.get("name").and_then(Value::as_str);
@@ -236,7 +298,7 @@ fn called(
     let tool = tool.ok_or_else(|| (INVALID_PARAMS, format!("no tool `{name}`")))?;
     let mut given = given.clone();
     if tool.takes("out") && given.get("out").is_none_or(Value::is_null) {
-        given.insert("out".to_owned(), json!(host.folder()));
+        given.insert("out".to_owned(), json!(host.folder(number)));
     }
     let out = given.get("out").and_then(Value::as_str).map(str::to_owned);
     let line = match tool.command(&given) {
@@ -251,7 +313,7 @@ fn called(
     Ok(summary(
         tool,
         &ran,
-        out.unwrap_or_else(|| host.folder()),
+        out.unwrap_or_else(|| host.folder(number)),
         host,
     ))
 }

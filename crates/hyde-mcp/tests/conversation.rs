@@ -26,8 +26,11 @@ impl Host for Recording {
         Ok(format!("{folder}/{name}"))
     }
 
-    fn folder(&self) -> String {
-        "somewhere".to_owned()
+    fn folder(&self, call: usize) -> String {
+        match call {
+            1 => "somewhere".to_owned(),
+            _ => format!("somewhere_{call}"),
+        }
     }
 }
 
@@ -60,7 +63,7 @@ impl Host for Endless {
         Err("nothing is written".to_owned())
     }
 
-    fn folder(&self) -> String {
+    fn folder(&self, _: usize) -> String {
         "somewhere".to_owned()
     }
 }
@@ -173,6 +176,75 @@ fn samples_stay_on_the_disk() {
     assert!(host.written.lock().unwrap()[0].contains("499.0"));
     let line = ["run", "--out=somewhere", "--json", "--", "a.hyde"];
     assert_eq!(host.ran.lock().unwrap()[0], line);
+}
+
+#[test]
+fn a_second_call_leaves_the_files_of_the_first() {
+    let samples: Vec<f64> = (0..500).map(f64::from).collect();
+    let host = Recording {
+        answer: Ran {
+            stdout: json!({ "ok": true, "x": samples }).to_string(),
+            ..Ran::default()
+        },
+        ..Recording::default()
+    };
+    let call = |id: u8, tool: &str| {
+        json!({
+            "jsonrpc": "2.0", "id": id, "method": "tools/call",
+            "params": { "name": tool, "arguments": { "file": "a.hyde" } },
+        })
+        .to_string()
+    };
+    let answers = talk(
+        &host,
+        &[&call(1, "run"), &call(2, "run"), &call(3, "modes")],
+    );
+    let paths: Vec<Value> = answers
+        .iter()
+        .map(|own| {
+            let text = own["result"]["content"][0]["text"].as_str().unwrap();
+            serde_json::from_str::<Value>(text).unwrap()["complete_answer"].clone()
+        })
+        .collect();
+    let expected = [
+        "somewhere/run.json",
+        "somewhere_2/run.json",
+        "somewhere_3/modes.json",
+    ];
+    assert_eq!(paths, expected);
+    assert_eq!(host.ran.lock().unwrap()[1][1], "--out=somewhere_2");
+}
+
+#[test]
+fn several_messages_in_a_line_have_one_list_of_answers() {
+    let line = json!([
+        { "jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": { "name": "explain", "arguments": {} } },
+        { "jsonrpc": "2.0", "method": "notifications/initialized" },
+        { "jsonrpc": "2.0", "id": 2, "method": "ping" },
+        1,
+    ])
+    .to_string();
+    let begin = |version: &str| {
+        json!({ "jsonrpc": "2.0", "id": 0, "method": "initialize", "params": { "protocolVersion": version } })
+            .to_string()
+    };
+    let host = Recording::default();
+    let answers = talk(&host, &[&begin("2025-03-26"), &line, "[]"]);
+    let list = answers.iter().find_map(Value::as_array).unwrap();
+    let mut ids: Vec<Option<u64>> = list.iter().map(|own| own["id"].as_u64()).collect();
+    ids.sort_unstable();
+    assert_eq!(ids, [None, Some(1), Some(2)]);
+    assert!(
+        answers.iter().any(|own| own["error"]["code"] == -32600),
+        "{answers:?}"
+    );
+    assert_eq!(answers.len(), 3);
+    // Later versions have none.
+    let answers = talk(&host, &[&begin("2025-06-18"), &line]);
+    assert!(answers.iter().all(Value::is_object), "{answers:?}");
+    let fault = answers.iter().find(|own| own["error"]["code"] == -32600);
+    let said = fault.unwrap()["error"]["message"].as_str().unwrap();
+    assert!(said.contains("2025-03-26"), "{said}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use crate::expression::{is_state, literal};
 use crate::names::{Names, column_name, mode_name, quoted};
-use crate::{Begun, mode_number};
+use crate::{Begun, late, mode_number};
 use hyde_ir::dae::{Dae, InitialCondition, Space};
 use hyde_ir::{Interpolation, ParamId, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
@@ -77,6 +77,7 @@ pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>, begun: &Beg
             declare(text, "discrete Real", &name, &parts);
         }
     }
+    late::declare(text, dae, names, begun);
     for automaton in dae.automata.iter() {
         let modes: Vec<String> = automaton
             .modes
@@ -124,7 +125,7 @@ pub(crate) fn reported(text: &mut String, dae: &Dae, names: &Names<'_>) {
 }
 
 fn parameters(text: &mut String, dae: &Dae, names: &Names<'_>) {
-    let found_ones = found_ones(dae);
+    let (found_ones, inputs) = (found_ones(dae), inputs(dae));
     for &param in &dae.parameter_order {
         let parameter = &dae.parameters[param];
         let input = dae.experiment.free.contains(&param);
@@ -138,16 +139,17 @@ fn parameters(text: &mut String, dae: &Dae, names: &Names<'_>) {
                 declare(text, "input Real", &name, &parts);
                 continue;
             }
-            let found = found_ones.contains(&param) && !reads_input(dae, param);
+            let found = found_ones.contains(&param) && !inputs.contains(&param);
             if parameter.found {
                 parts.push(format!("start = {value}"));
             }
             if found {
                 parts.push("fixed = false".to_owned());
             }
-            // What the compiler made of others stands for itself, and an input may be in it.
-            let made = parameter.derived || parameter.is_final;
-            let kind = match (reads_input(dae, param), made && !found) {
+            // What the compiler made of others stands for itself, and an input may be in it. The numbers in the class are
+            // made with the value of a structural parameter.
+            let made = parameter.derived || parameter.is_final || parameter.structural;
+            let kind = match (inputs.contains(&param), made && !found) {
                 (true, _) => "Real",
                 (false, true) => "final parameter Real",
                 (false, false) => "parameter Real",
@@ -181,25 +183,32 @@ fn value_of(dae: &Dae, names: &Names<'_>, param: ParamId, element: i32) -> Strin
     }
 }
 
-/// Whether the value of a parameter is made of an input.
-fn reads_input(dae: &Dae, param: ParamId) -> bool {
-    let mut others = others_in(dae, param).into_iter();
-    others.any(|other| dae.experiment.free.contains(&other) || reads_input(dae, other))
-}
-
 /// The parameters that initial equations find, and those that are made of them.
 fn found_ones(dae: &Dae) -> BTreeSet<ParamId> {
-    let mut found = BTreeSet::new();
-    if dae.parameters.iter().any(|own| own.found) {
+    with_what_follows(dae, |param| dae.parameters[param].found)
+}
+
+/// The inputs, and the parameters that are made of them.
+fn inputs(dae: &Dae) -> BTreeSet<ParamId> {
+    with_what_follows(dae, |param| dae.experiment.free.contains(&param))
+}
+
+/// Some parameters, and those that are made of them.
+fn with_what_follows(dae: &Dae, first: impl Fn(ParamId) -> bool) -> BTreeSet<ParamId> {
+    let mut all = BTreeSet::new();
+    if dae.parameter_order.iter().any(|&param| first(param)) {
         // Others come behind those that they are made of.
         for &param in &dae.parameter_order {
-            let mut others = others_in(dae, param).into_iter();
-            if dae.parameters[param].found || others.any(|other| found.contains(&other)) {
-                found.insert(param);
+            if first(param)
+                || others_in(dae, param)
+                    .iter()
+                    .any(|other| all.contains(other))
+            {
+                all.insert(param);
             }
         }
     }
-    found
+    all
 }
 
 /// The other parameters that the value of a parameter is made of.
@@ -217,8 +226,8 @@ fn others_in(dae: &Dae, param: ParamId) -> Vec<ParamId> {
 /// Names and values of the parameters that follow from those which initial equations find: no binding of Modelica may read
 /// these, an initial equation may.
 pub(crate) fn found_with_others(dae: &Dae, names: &Names<'_>) -> Vec<(String, String)> {
-    let found = found_ones(dae);
-    let follows = |param: &&ParamId| !dae.parameters[**param].found && !reads_input(dae, **param);
+    let (found, inputs) = (found_ones(dae), inputs(dae));
+    let follows = |param: &&ParamId| !dae.parameters[**param].found && !inputs.contains(*param);
     let order = dae.parameter_order.iter();
     let following = order.filter(|param| found.contains(param)).filter(follows);
     let elements = following.flat_map(|&param| {

@@ -5,15 +5,15 @@
 //! and guard`, which becomes true when the mode is entered too. Guards that are true at the start are taken before
 //! ([`crate::Begun`]).
 
-use crate::mode_number;
 use crate::names::{Names, mode_name};
+use crate::{Begun, late, mode_number};
 use hyde_ir::dae::{Dae, Reaction, ReactionKind, Target};
 use hyde_ir::{AutomatonId, ClockId, Id as _};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Writes all events, behind the equations.
-pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
+pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>, begun: &Begun) {
     let chains = chains(dae);
     jumps(text, dae, names, &chains);
     for reaction in &dae.reactions {
@@ -23,10 +23,11 @@ pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
             let _ = writeln!(text, "  assert(not {condition}, \"{message}\");");
         }
     }
+    late::asserts(text, dae, names, begun);
     for reactions in chains.values() {
         chain(text, dae, names, reactions);
     }
-    ticks(text, dae, names);
+    ticks(text, dae, names, begun);
 }
 
 /// The reactions of each automaton, and those of each `when` clause, in their order.
@@ -159,7 +160,7 @@ fn chain(text: &mut String, dae: &Dae, names: &Names<'_>, reactions: &[&Reaction
 
 /// The ticks of clocks in their order, and what they hold. What changes later changes first at an instant: a tick then writes
 /// the next value.
-fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>) {
+fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>, begun: &Begun) {
     for hold in dae.holds.iter() {
         let tick = &dae.ticks[ClockId::from_index(hold.clock)];
         if dae.exprs.is_constant(tick.delay, 0.0) {
@@ -171,13 +172,19 @@ fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>) {
             text,
             "algorithm\n  when sample({phase} + {delay}, {period}) then"
         );
-        held(text, names, (hold.source, hold.target, hold.len), true);
+        for element in 0..hold.len {
+            let source = late::source(dae, names, begun, hold.source + element);
+            if let (Some(source), Some(target)) = (source, names.memory(hold.target + element)) {
+                let _ = writeln!(text, "    {target} := pre({source});");
+            }
+        }
         text.push_str("  end when;\n");
     }
     for &clock in &dae.tick_order {
         let tick = &dae.ticks[clock];
         let (phase, period) = (names.number(tick.phase, 0), names.number(tick.period, 0));
         let _ = writeln!(text, "algorithm\n  when sample({phase}, {period}) then");
+        late::moved(text, dae, names, begun, clock);
         for assignment in &tick.assignments {
             for counter in assignment.range.iter() {
                 let target = names.variable(assignment.var, assignment.index.at(counter));
@@ -191,28 +198,15 @@ fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>) {
             .iter()
             .filter(|hold| prompt && hold.clock == clock.index())
         {
-            held(text, names, (hold.source, hold.target, hold.len), false);
+            for element in 0..hold.len {
+                if let (Some(source), Some(target)) = (
+                    names.memory(hold.source + element),
+                    names.memory(hold.target + element),
+                ) {
+                    let _ = writeln!(text, "    {target} := {source};");
+                }
+            }
         }
         text.push_str("  end when;\n");
-    }
-}
-
-fn held(
-    text: &mut String,
-    names: &Names<'_>,
-    (source, target, len): (usize, usize, usize),
-    late: bool,
-) {
-    for element in 0..len {
-        if let (Some(source), Some(target)) = (
-            names.memory(source + element),
-            names.memory(target + element),
-        ) {
-            let value = match late {
-                true => format!("pre({source})"),
-                false => source.to_owned(),
-            };
-            let _ = writeln!(text, "    {target} := {value};");
-        }
     }
 }

@@ -208,7 +208,8 @@ fn unary(op: UnaryOp, a: &str) -> String {
 fn binary(op: BinaryOp, a: &str, b: &str) -> String {
     match op {
         BinaryOp::Min | BinaryOp::Max | BinaryOp::Atan2 => format!("{}({a}, {b})", op.name()),
-        BinaryOp::FloorTo => format!("(floor({a}/{b})*{b})"),
+        // Four roundings of a whole number count as that number.
+        BinaryOp::FloorTo => format!("(floor({a}/{b} + 8.881784197001252e-16*abs({a}/{b}))*{b})"),
         BinaryOp::RoundTo => format!("(floor({a}/{b} + 0.5)*{b})"),
         // Reals are not compared for equality.
         BinaryOp::Eq => format!("(abs({a} - {b}) <= 0)"),

@@ -5,6 +5,7 @@
 //! expression    expressions and truths                                           expression.rs
 //! declarations  parameters, inputs, variables                                    declarations.rs
 //! events        modes, `when` clauses, clocks, held values, asserts              events.rs
+//! late          what a clock holds longer than its period                        late.rs
 //! ```
 //! What is written is the system after index reduction ([`hyde_ir::Dae`]): the flat model itself has modes that change the
 //! index, which Modelica does not express; reduced, a mode only switches between equations. Arrays are written element by
@@ -13,6 +14,7 @@
 mod declarations;
 mod events;
 mod expression;
+mod late;
 mod names;
 mod refusals;
 
@@ -21,6 +23,7 @@ use hyde_diag::{Diagnostic, Diagnostics};
 use hyde_ir::Dae;
 use hyde_ir::dae::{InitialCondition, ReactionKind};
 use hyde_study::Project;
+pub use late::ticks_before_change;
 use names::Names;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -45,6 +48,8 @@ pub struct Begun {
     pub states: BTreeMap<usize, f64>,
     /// Modes, and what is remembered.
     pub memory: BTreeMap<usize, f64>,
+    /// Of each clock, how many further ticks run before what it holds changes ([`ticks_before_change`]).
+    pub earlier: Vec<usize>,
 }
 
 /// The model of a project as a class of that name. What is wrong is in the project's diagnostics.
@@ -127,7 +132,7 @@ fn class(dae: &Dae, name: &str, begun: &Begun) -> Option<Written> {
         }
     }
     declarations::reported(&mut text, dae, &names);
-    events::write(&mut text, dae, &names);
+    events::write(&mut text, dae, &names, begun);
     let _ = writeln!(text, "end {name};");
     Some(Written {
         text,

@@ -2,6 +2,7 @@
 
 mod class;
 mod html;
+mod inherited;
 mod links;
 
 use html::{code, documentation, first_sentence, page, table};

@@ -59,7 +59,9 @@ pub fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -
     for line in start::lines(program, &run.results.yielded) {
         let _ = writeln!(out, "  {line}");
     }
-    for (automaton, times) in program.automata.iter().zip(&run.results.mode_times) {
+    // What has one mode alone is in it all the time.
+    let automata = program.automata.iter().zip(&run.results.mode_times);
+    for (automaton, times) in automata.filter(|(automaton, _)| automaton.modes.len() > 1) {
         let parts: Vec<String> = automaton
             .modes
             .iter()

@@ -2,7 +2,7 @@
 
 use crate::comparison::shortened;
 use hyde_signal::statistics::distributions::TWO_SIDED;
-use hyde_study::trend::{Trends, slope, word};
+use hyde_study::trend::{Trends, slope, why_none, word};
 use hyde_units::significant;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -30,7 +30,11 @@ pub fn text(found: &Trends) -> String {
         let (Some(first), Some(last)) = (trend.points.first(), trend.points.last()) else {
             continue;
         };
-        let went = slope(&trend.points).map_or_else(String::new, |slope| {
+        let none = || {
+            let why = why_none(&trend.points).unwrap_or_default();
+            format!("{:>17}  {why}", "no slope:")
+        };
+        let went = slope(&trend.points).map_or_else(none, |slope| {
             let numbers = format!(
                 "{} ± {}",
                 significant(slope.each, 3),
@@ -83,7 +87,8 @@ pub fn json(found: &Trends) -> Value {
                 "word": word(&slope),
             })
         });
-        json!({ "name": trend.name, "unit": trend.unit, "points": points, "slope": went })
+        let none = why_none(&trend.points);
+        json!({ "name": trend.name, "unit": trend.unit, "points": points, "slope": went, "no_slope": none })
     });
     json!({ "ok": true, "reports": labels, "trends": each.collect::<Vec<Value>>() })
 }

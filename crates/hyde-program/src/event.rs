@@ -26,6 +26,9 @@ pub struct Relation {
 pub struct Assignment {
     /// Where.
     pub target: Target,
+    /// Whether a condition of an exit or of a `when` reads it, and its value is made of what events set, as a count is: it may be
+    /// another one in each round of an instant.
+    pub counts: bool,
     /// Where it is written.
     pub origin: Origin,
 }

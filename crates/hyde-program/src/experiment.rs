@@ -54,6 +54,8 @@ pub struct Reduction {
     pub output: usize,
     /// The output that is 1 where the value counts; none where it always does.
     pub condition: Option<usize>,
+    /// The outputs that are a - b of each comparison of `a` with `b` in what it reads.
+    pub margins: Vec<usize>,
 }
 
 /// A measure or expectation; its value is of the same number in [`crate::Kernels::measures`].

@@ -13,7 +13,8 @@
 //! closely. If they lead in a circle still, the modes stay where all this is noise at rest, beneath the tolerance. Else they end
 //! the run, as fifty rounds do: the conditions would fire for ever.
 
-mod branches;
+pub(crate) mod branches;
+mod contradictions;
 mod edges;
 mod endless;
 mod located;
@@ -25,7 +26,7 @@ use crate::consistent::Consistent;
 use crate::failed_equation::with_values;
 use crate::failure::{Failure, FailureKind};
 use crate::moment::Moment;
-use crate::results::{Contradiction, Event, EventKind, MOST_CONTRADICTIONS};
+use crate::results::{Contradiction, Event, EventKind};
 use crate::root_rates::root_rates;
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
@@ -54,6 +55,8 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) sensitivities: Option<&'s mut Sensitivities>,
     /// The relations whose crossing this instant was located at.
     pub(crate) crossed: Vec<usize>,
+    /// The states that events of this instant have set.
+    pub(crate) struck: Vec<usize>,
     /// Relations of equations change, and nothing else happens.
     pub(crate) modes_are_given: bool,
     /// How long guards that are at rest stay at their zeros, in s.
@@ -172,6 +175,10 @@ impl Instant<'_, '_> {
                 branches = Branches::from(self);
             }
             let key: Vec<u64> = self.mode_key();
+            if !exits_alone {
+                // What has jumped may lead elsewhere.
+                (seen, looked_closer) = (Vec::new(), false);
+            }
             let again = exits_alone && !fired.is_empty() && seen.contains(&key);
             if again && looked_closer {
                 return Err(self.chattering(&causes));
@@ -400,38 +407,6 @@ impl Instant<'_, '_> {
         }
         self.let_go(fired, &entered)?;
         self.pin(&entered)
-    }
-
-    /// Notes where reactions that fire together give a variable different values, and where two `when` give it one: the second
-    /// does not add to what the first one does.
-    #[cold]
-    fn note_contradictions(&mut self, fired: &[usize], values: &[f64]) {
-        let program = self.state.program;
-        let mut given: Vec<(usize, usize)> = Vec::new();
-        for &number in fired {
-            for index in program.reactions[number].assignments.clone() {
-                let target = program.assignments[index].target;
-                let when =
-                    |by: usize| matches!(program.reactions[by].kind, ReactionKind::When { .. });
-                let mut before = given.iter();
-                let other = before.find(|(other, by)| {
-                    *by != number
-                        && program.assignments[*other].target == target
-                        && (when(*by) && when(number)
-                            || values[*other].to_bits() != values[index].to_bits())
-                });
-                if let Some(&(other, by)) = other
-                    && self.contradictions.len() < MOST_CONTRADICTIONS
-                {
-                    self.contradictions.push(Contradiction {
-                        t: self.now.t,
-                        causes: [by, number].map(|by| program.reactions[by].text.clone()),
-                        values: [values[other], values[index]],
-                    });
-                }
-                given.push((index, number));
-            }
-        }
     }
 
     /// The derivatives by parameters of what events assign and of the values of pins, if they are asked for.

@@ -10,6 +10,7 @@ use crate::moment::{At, Moment};
 use crate::norms::{largest_of, norm};
 use crate::release::{self, by_parameter};
 use crate::selection;
+use crate::start_branches::other_branch;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
 use hyde_program::{Function, InitialCondition, RelationUse, Wrt};
@@ -61,7 +62,12 @@ pub(crate) fn solve(
         if round == Round::First {
             guess_relations(state, now.at(), Known::Guesses);
         }
-        consistent.solve(state, now, true)?;
+        let start = now.clone();
+        if let Err(failure) = consistent.solve(state, now, true)
+            && !(round == Round::First && other_branch(state, consistent, (now, &start)))
+        {
+            return Err(failure);
+        }
         return check(state, now.at(), round);
     }
     // A first guess for the rest from the states' start values; it need not exist.

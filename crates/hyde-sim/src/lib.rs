@@ -56,6 +56,7 @@ mod simulation;
 mod singular;
 mod slide;
 mod solver;
+mod start_branches;
 mod start_modes;
 mod state;
 mod time_spent;

@@ -1,5 +1,5 @@
-//! A full check: every experiment of a file compiled with what its budget asks for, or its last model, and its calibrations
-//! and diagnoses read. Sweeps are not planned.
+//! A full check: every experiment of a file compiled with what its budget asks for, or its last model, its other classes each
+//! looked at by itself, and its calibrations and diagnoses read. Sweeps are not planned.
 
 use crate::aim::Aim;
 use crate::asked::Asked;
@@ -7,7 +7,7 @@ use crate::project::{Loaded, Project};
 use crate::records::Records;
 use crate::refused::Fault;
 use hyde_calibrate::CalibrationPlan;
-use hyde_compiler::{Compiled, DiagnosisPlan, ideals};
+use hyde_compiler::{Alone, Compiled, DiagnosisPlan, alone, ideals};
 use hyde_syntax::ast::StudyKind;
 
 /// What a check found.
@@ -18,10 +18,12 @@ pub struct Checked {
     pub faults: Vec<Fault>,
     /// What could not be checked at all: a record that cannot be read.
     pub refused: Vec<String>,
+    /// The classes that were looked at by themselves, where the whole file is checked and all else is in order.
+    pub alone: Alone,
 }
 
-/// Checks the experiment or the model that is asked for of a file that is parsed, else all experiments of the file, else its last model. One that is
-/// wrong does not keep the others from being looked at. `visit` sees what compiled; `stop` is asked between stages, and true
+/// Checks the experiment or the model that is asked for of a file that is parsed, else all experiments of the file, else its
+/// last model, and then its other classes. One that is wrong does not keep the others from being looked at. `visit` sees what compiled; `stop` is asked between stages, and true
 /// ends the check early with what was found so far.
 pub fn check(
     mut loaded: Loaded,
@@ -33,6 +35,7 @@ pub fn check(
         project: None,
         faults: Vec::new(),
         refused: Vec::new(),
+        alone: Alone::default(),
     };
     // A diagnosis names effects of packages that its model need not use.
     let studies = |kind| loaded.file.studies().any(|study| study.kind == kind);
@@ -46,9 +49,13 @@ pub fn check(
         }
         (experiment, _) => vec![experiment.clone()],
     };
-    if chosen.is_empty() {
-        chosen.push(None);
+    let whole = asked.experiment.is_none() && asked.model.is_none();
+    match (chosen.is_empty(), loaded.file.models().next()) {
+        (false, _) => {}
+        (true, None) if whole => found.project = Some(loaded.clone().without_model(asked)),
+        (true, _) => chosen.push(None),
     }
+    let mut models = Vec::new();
     for experiment in chosen {
         if stop() {
             return found;
@@ -64,6 +71,7 @@ pub fn check(
                 continue;
             }
         };
+        models.push(project.model.clone());
         match compiled(&mut project, stop) {
             Ok(compiled) => visit(&project, &compiled),
             Err(fault) => found.faults.push(fault),
@@ -75,6 +83,16 @@ pub fn check(
                 .for_each(|own| project.diagnostics.push(own.clone()));
         }
         found.project = Some(project);
+    }
+    if let Some(project) = &mut found.project
+        && whole
+        && found.refused.is_empty()
+    {
+        let (sources, diagnostics) = (&project.sources, &mut project.diagnostics);
+        found.alone = alone(sources, &project.file, &models, stop, diagnostics);
+        if project.diagnostics.has_errors() && found.faults.is_empty() {
+            found.faults.push(Fault::Model);
+        }
     }
     if let Some(project) = &mut found.project
         && !studies_in_order(project)

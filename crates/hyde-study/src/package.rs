@@ -102,6 +102,10 @@ impl Roots {
                         continue;
                     }
                 };
+                if number == at {
+                    diagnostics.push(dependency.itself());
+                    continue;
+                }
                 if let Some(manifest) = &roots[number].manifest
                     && manifest.name != dependency.name
                 {
@@ -188,23 +192,15 @@ impl Roots {
 
     /// The packages of the model's own root, by name, each with its file; none without a manifest.
     pub fn own_packages(&self) -> Vec<(String, PathBuf)> {
-        let root = &self.roots[0];
-        let Some(manifest) = &root.manifest else {
-            return Vec::new();
-        };
-        let mut found = Vec::new();
-        for folder in &manifest.folders {
-            let top = inside(&root.folder, folder);
-            for place in below(self.world.as_ref(), &top, "hyde", MANIFEST) {
-                if let Ok(name) = place.strip_prefix(&top)
-                    && !links_out(self.world.as_ref(), &top, &place)
-                {
-                    found.push((dotted(name), place));
-                }
-            }
-        }
-        found.sort();
-        found
+        let own = self.roots.first();
+        own.map_or_else(Vec::new, |root| root.packages(self.world.as_ref()))
+    }
+
+    /// The files of the packages that the model's own root depends on, near or far.
+    pub fn packages_depended_on(&self) -> Vec<PathBuf> {
+        let others = self.roots.iter().skip(1);
+        let packages = others.flat_map(|root| root.packages(self.world.as_ref()));
+        packages.map(|(_, place)| place).collect()
     }
 
     /// The name that a file of the model's own root has by its place.
@@ -230,6 +226,26 @@ impl Roots {
 }
 
 impl Root {
+    /// Its packages, by name, each with its file; none without a manifest.
+    fn packages(&self, world: &dyn World) -> Vec<(String, PathBuf)> {
+        let Some(manifest) = &self.manifest else {
+            return Vec::new();
+        };
+        let mut found = Vec::new();
+        for folder in &manifest.folders {
+            let top = inside(&self.folder, folder);
+            for place in below(world, &top, "hyde", MANIFEST) {
+                if let Ok(name) = place.strip_prefix(&top)
+                    && !links_out(world, &top, &place)
+                {
+                    found.push((dotted(name), place));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+
     /// The files that a package may be in: one below each of the folders, where it is there.
     fn places(&self, world: &dyn World, package: &str) -> Result<Vec<PathBuf>, Diagnostic> {
         let file = format!("{}.hyde", package.replace('.', "/"));
@@ -272,10 +288,13 @@ pub fn links_out(world: &dyn World, folder: &Path, path: &Path) -> bool {
     }
 }
 
+/// Whether two paths lead to one folder or file; an empty path is the folder that one is in.
 fn same(world: &dyn World, a: &Path, b: &Path) -> bool {
-    world
-        .real(a)
-        .is_some_and(|real| world.real(b) == Some(real))
+    let real = |path: &Path| match path.as_os_str().is_empty() {
+        true => world.real(Path::new(".")),
+        false => world.real(path),
+    };
+    real(a).is_some_and(|known| real(b) == Some(known))
 }
 
 /// A folder below another; `.` is that one itself.

@@ -153,11 +153,8 @@ impl Loaded {
         }
     }
 
-    /// Chooses the model and the experiment that are asked for, and reads its records.
-    ///
-    /// # Errors
-    /// There is no such experiment, model or record.
-    pub fn choose(self, asked: &Asked, needed: Records) -> Result<Project, String> {
+    /// The file with neither a model nor an experiment chosen.
+    pub(crate) fn without_model(self, asked: &Asked) -> Project {
         let Self {
             sources,
             file,
@@ -166,7 +163,7 @@ impl Loaded {
             fmus,
             diagnostics,
         } = self;
-        let mut project = Project {
+        Project {
             sources,
             hash,
             model: String::new(),
@@ -177,7 +174,15 @@ impl Loaded {
             settings: asked.settings.clone(),
             diagnostics,
             file,
-        };
+        }
+    }
+
+    /// Chooses the model and the experiment that are asked for, and reads its records.
+    ///
+    /// # Errors
+    /// There is no such experiment, model or record.
+    pub fn choose(self, asked: &Asked, needed: Records) -> Result<Project, String> {
+        let mut project = self.without_model(asked);
         if project.diagnostics.has_errors() {
             return Ok(project);
         }

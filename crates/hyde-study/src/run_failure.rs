@@ -57,6 +57,10 @@ pub fn diagnostic(
             ends_before_start(*start_s, *stop_s, record.as_deref(), of_experiment),
             Fault::Model,
         ),
+        RunError::Lasts(span_s) => {
+            let span = instant(*span_s);
+            (refused::lasts(&span, of_experiment), Fault::Model)
+        }
         RunError::NotPositive(what, value) => (
             refused::not_positive(what, *value, of_experiment),
             Fault::Model,

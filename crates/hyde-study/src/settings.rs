@@ -1,7 +1,7 @@
 //! `--set path=value [unit]`.
 
 use hyde_program::{Given, Parameter};
-use hyde_units::{Agreement, Dimension, NamedUnit, format_value};
+use hyde_units::{Agreement, Dimension, NamedUnit, format_value, significant};
 
 /// A value set from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl Setting {
     }
 }
 
-/// Reads `saddle.M=320 [kg]`, with or without brackets and blanks.
+/// Reads `saddle.M=320 [kg]`, with blanks or without.
 pub fn parse(text: &str) -> Result<Setting, String> {
     let (path, value) = text
         .split_once('=')
@@ -62,17 +62,30 @@ pub fn parse(text: &str) -> Result<Setting, String> {
     if !number.is_finite() {
         return Err(format!("`{text}`: the number must be finite"));
     }
-    let unit = value[end..]
-        .trim()
-        .trim_start_matches('[')
-        .trim_end_matches(']')
-        .trim();
     let path = path.trim().to_owned();
-    if unit.is_empty() {
+    let behind = value[end..].trim();
+    if behind.is_empty() {
         return Ok(Setting::of(path, number, None));
     }
+    let Some(unit) = in_brackets(behind) else {
+        let unit = behind.trim_matches(|c: char| "[]".contains(c) || c.is_whitespace());
+        let instead = match NamedUnit::parse(unit) {
+            Ok(_) if !unit.is_empty() => format!("`{path}='{word} [{unit}]'`"),
+            Ok(_) | Err(_) => format!("`{path}={word}`, or with a unit `{path}='{word} [mm]'`"),
+        };
+        return Err(format!(
+            "`{text}`: behind the number there is no unit in brackets: write {instead}"
+        ));
+    };
     let unit = NamedUnit::parse(unit).map_err(|error| format!("`{text}`: {error}"))?;
     Ok(Setting::of(path, unit.unit().to_si(number), Some(unit)))
+}
+
+/// The text of a unit, `[kg]`, without its brackets.
+fn in_brackets(text: &str) -> Option<&str> {
+    let unit = text.strip_prefix('[')?.strip_suffix(']')?.trim();
+    let is_one = !unit.is_empty() && !unit.contains(['[', ']']);
+    is_one.then_some(unit)
 }
 
 /// What to write instead of a word that is not a number.
@@ -121,7 +134,7 @@ pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
         truth: setting.truth,
     };
     let Some(misfit) = parameter.misfit(&given) else {
-        return Ok(());
+        return check_share(setting, parameter);
     };
     let written: Vec<String> = misfit
         .instead
@@ -136,6 +149,21 @@ pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
         [only] => format!("`{name}` {reason}: write {only}"),
         _ => format!("`{name}` {reason}"),
     })
+}
+
+/// Whether a number without a unit is one beyond doubt: of a parameter in percent 7 may be 7 % or 700 %.
+fn check_share(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
+    let (name, value) = (&setting.path, setting.value);
+    let unit = parameter.unit.unit();
+    let is_plain = setting.unit.is_some() || setting.truth || value.abs() <= 0.0;
+    if is_plain || unit.is_si() || !parameter.dimension.is_dimensionless() {
+        return Ok(());
+    }
+    let shown = parameter.unit.text();
+    let whole = significant(unit.from_si(value), 10);
+    Err(format!(
+        "`{name}` is in {shown}: write `--set {name}='{value} [{shown}]'`, or `--set {name}='{whole} [{shown}]'` for the number {value}"
+    ))
 }
 
 /// Whether a number that is SI as it stands is one that the parameter may have.
@@ -164,7 +192,7 @@ mod tests {
         clippy::float_cmp,
         reason = "a number without a prefix is the nearest double"
     )]
-    fn values_take_their_unit_with_or_without_brackets() {
+    fn values_take_their_unit_in_brackets() {
         let setting = parse("saddle.M=320 [kg]").unwrap();
         assert_eq!((setting.path.as_str(), setting.value), ("saddle.M", 320.0));
         for (wrong, instead) in [
@@ -178,7 +206,26 @@ mod tests {
             assert!(parse(&instead.replace('\'', "")).is_ok(), "{instead}");
         }
         assert!(parse("m={1,2}").unwrap_err().ends_with("`m[1]=…`"));
-        assert_eq!(parse("gap = 12 um").unwrap().value, 12e-6);
+        assert_eq!(parse("gap = 12[um]").unwrap().value, 12e-6);
+        for wrong in [
+            "12 um",
+            "12 [um",
+            "12[um",
+            "12 um]",
+            "12 [um]]",
+            "12 [[um]",
+            "12 [um] [m]",
+            "12 [",
+            "12 ]",
+            "12[",
+            "12 []",
+        ] {
+            let refused = parse(&format!("gap={wrong}")).unwrap_err();
+            assert!(
+                refused.contains("`gap='12 [") || refused.contains("`gap=12`"),
+                "{refused}"
+            );
+        }
         assert_eq!(parse("n=3").unwrap().unit, None);
         let on = parse("on = true").unwrap();
         assert_eq!((on.value, on.truth), (1.0, true));

@@ -1,6 +1,7 @@
 //! How sizes and parameters went from one diagnosis to the next.
 //!
-//! A report whose name begins with a date, `2026-03-14`, is of that day; where one is not, all count one after the other.
+//! A report whose name begins with a date, `2026-03-14`, is of that day, and reports are sorted by their days; where one is
+//! not, all count one after the other.
 //! Slopes are those of least squares weighed by the intervals, which grow where values scatter by more.
 
 use hyde_signal::statistics::distributions::TWO_SIDED;
@@ -55,12 +56,17 @@ pub fn trends(reports: &[(String, Value)]) -> Result<Trends, String> {
             "a trend needs two reports or more: `hyde trend 2026-01-10 2026-03-14`".to_owned(),
         );
     }
+    let mut reports: Vec<&(String, Value)> = reports.iter().collect();
+    if reports.iter().all(|(label, _)| day(label).is_some()) {
+        let order = |label: &str| day(label).unwrap_or(0.0);
+        reports.sort_by(|a, b| order(&a.0).total_cmp(&order(&b.0)));
+    }
     let labels: Vec<String> = reports.iter().map(|(label, _)| label.clone()).collect();
     let days: Option<Vec<f64>> = labels.iter().map(|label| day(label)).collect();
     let number = |count: usize| (0..count).map(|k| k as f64).collect();
     let at: Vec<f64> = days.clone().unwrap_or_else(|| number(labels.len()));
     let mut trends: BTreeMap<(usize, String), Trend> = BTreeMap::new();
-    for ((_, report), at) in reports.iter().zip(&at) {
+    for ((_, report), at) in reports.into_iter().zip(&at) {
         for (rank, name, unit, quantity) in quantities(report) {
             let trend = trends.entry((rank, name.clone())).or_insert(Trend {
                 name,
@@ -139,14 +145,27 @@ fn day(name: &str) -> Option<f64> {
     Some(days as f64)
 }
 
+/// Why points tell no slope, if so.
+#[must_use]
+pub fn why_none(points: &[Point]) -> Option<&'static str> {
+    let unknown = |point: &Point| point.deviation.is_nan() || point.deviation <= 0.0;
+    // Days and numbers of reports are whole.
+    let at_once = |pair: &[Point]| (pair[1].at - pair[0].at).abs() < 0.5;
+    if points.len() < 2 {
+        Some("of one report")
+    } else if points.windows(2).all(at_once) {
+        Some("all of one day")
+    } else if points.iter().any(unknown) {
+        Some("an interval is missing")
+    } else {
+        None
+    }
+}
+
 /// The slope of a trend; `None` where its points do not tell one.
 #[must_use]
 pub fn slope(points: &[Point]) -> Option<Slope> {
-    if points.len() < 2
-        || points
-            .iter()
-            .any(|point| point.deviation.is_nan() || point.deviation <= 0.0)
-    {
+    if why_none(points).is_some() {
         return None;
     }
     let sum = |of: &dyn Fn(&Point) -> f64| -> f64 {
@@ -158,9 +177,6 @@ pub fn slope(points: &[Point]) -> Option<Slope> {
     let weight = sum(&|_| 1.0);
     let (at, value) = (sum(&|p| p.at) / weight, sum(&|p| p.value) / weight);
     let spread = sum(&|p| (p.at - at).powi(2));
-    if spread <= 0.0 {
-        return None;
-    }
     let each = sum(&|p| (p.at - at) * (p.value - value)) / spread;
     let left = sum(&|p| (p.value - value - each * (p.at - at)).powi(2));
     let scatter = left / (points.len() as f64 - 2.0).max(1.0);
@@ -207,6 +223,34 @@ mod tests {
         assert_eq!(day("2000-03-01-left"), Some(11_017.0));
         assert_eq!(day("2026-13-01"), None);
         assert_eq!(day("out"), None);
+    }
+
+    #[test]
+    fn reports_are_in_the_order_of_their_days_and_one_day_tells_no_slope() {
+        let report = |size: f64| {
+            let value = json!({ "value": size, "interval": [size - 0.1, size + 0.1] });
+            json!({ "effects": [], "parameters": [{ "name": "c", "unit": "N/m", "after": value }] })
+        };
+        let of = |label: &str, size: f64| (label.to_owned(), report(size));
+        let mixed = [
+            of("2026-03-04", 4.0),
+            of("2026-03-01", 1.0),
+            of("2026-03-02", 2.0),
+        ];
+        let found = trends(&mixed).unwrap();
+        assert_eq!(found.labels, ["2026-03-01", "2026-03-02", "2026-03-04"]);
+        let values: Vec<f64> = found.trends[0].points.iter().map(|p| p.value).collect();
+        assert_eq!(values, [1.0, 2.0, 4.0]);
+        let slope_of = |found: &Trends| slope(&found.trends[0].points);
+        assert!((slope_of(&found).unwrap().each - 1.0).abs() < 1e-9);
+        let one = [of("2026-03-01-evening", 3.0), of("2026-03-01-morning", 1.0)];
+        let one = trends(&one).unwrap();
+        assert_eq!(one.labels, ["2026-03-01-evening", "2026-03-01-morning"]);
+        assert!(slope_of(&one).is_none());
+        assert_eq!(why_none(&one.trends[0].points), Some("all of one day"));
+        // Names without a date count one after the other.
+        let numbered = trends(&[of("b", 3.0), of("a", 1.0)]).unwrap();
+        assert!((slope_of(&numbered).unwrap().each + 2.0).abs() < 1e-9);
     }
 
     #[test]

@@ -40,7 +40,7 @@ fn plant_ns() -> Result<f64, String> {
     let tables = axis.parse()?.tables;
     let program = axis.compile(Backend::Native)?.program;
     let recording =
-        Recording::new(RECORD, &program, tables).map_err(|error| format!("{error:?}"))?;
+        Recording::new(RECORD, &program, tables, &[]).map_err(|error| format!("{error:?}"))?;
     let rows = recording.rows();
     let recordings = [recording];
     let observer =

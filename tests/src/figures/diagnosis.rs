@@ -264,7 +264,7 @@ fn recordings(data: &Path, begin: &str, program: &Program) -> Result<Vec<Recordi
     let each = files.iter().map(|file| {
         let tables = bench_axis::declared()?.record("file", file).parse()?.tables;
         let name = file.display().to_string();
-        Recording::new(&name, program, tables).map_err(|error| format!("{name}: {error:?}"))
+        Recording::new(&name, program, tables, &[]).map_err(|error| format!("{name}: {error:?}"))
     });
     each.collect()
 }

@@ -291,8 +291,8 @@ fn a_sum_of_shared_sums_is_looked_at_once() {
         writeln!(model, "function f{k}\n{body}\nend f{k};").unwrap();
     }
     model.push_str(
-        "model M\n  Real x(start = 1, fixed = true), w;\nequation\n  der(x) = -w/1 [s];\n  w + f39(x) = 2*x;\nend M;\n\
-         experiment run of M\n  solve esdirk stop 1e-13 [s];\nend run;\n",
+        "model M\n  Real x(start = 1, fixed = true), w;\nequation\n  der(x) = -w/1e13 [s];\n  w + f39(x) = 2*x;\nend M;\n\
+         experiment run of M\n  solve esdirk stop 1 [s];\nend run;\n",
     );
     let folder = tempfile::tempdir().unwrap();
     write(&folder.path().join("shared.hyde"), &model);

@@ -89,11 +89,11 @@ fn mean_square(list: &[f64]) -> f64 {
 /// thousandth of a chi2 unit in a thousand samples.
 fn follow_the_exact_run((example, loaded, compiled): &(Example, Loaded, Compiled)) {
     let (_, _, declared) = bench();
-    let of = |program| Recording::new("strokes", program, loaded.tables.clone()).unwrap();
+    let of = |program| Recording::new("strokes", program, loaded.tables.clone(), &[]).unwrap();
     let real = of(&declared.program);
     let observer = Observer::new(&declared.program, std::slice::from_ref(&real), &[]).unwrap();
     let program = &compiled.program;
-    let exact = Recording::new("exact", program, made(example, loaded, &[], 0.0)).unwrap();
+    let exact = Recording::new("exact", program, made(example, loaded, &[], 0.0), &[]).unwrap();
     let innovations = Innovations::of(program, &exact, &observer, &[]).unwrap();
     for (channel, list) in innovations.channels.iter().enumerate() {
         let rms = mean_square(list).sqrt();
@@ -144,7 +144,7 @@ fn off_from_differences(with: &str, others: &[String], steps: &[f64]) -> BTreeMa
     let loaded = example.parse().unwrap();
     let compiled = loaded.compile(&example, Backend::Native).unwrap();
     let program = &compiled.program;
-    let recordings = [Recording::new("strokes", program, loaded.tables.clone()).unwrap()];
+    let recordings = [Recording::new("strokes", program, loaded.tables.clone(), &[]).unwrap()];
     let p = parameters(program, &[]);
     let mut varied = Varied::uncertain(program, &p);
     for name in others {
@@ -162,7 +162,7 @@ fn off_from_differences(with: &str, others: &[String], steps: &[f64]) -> BTreeMa
         .unwrap()
         .compile(&declared, Backend::Native)
         .unwrap();
-    let record = Recording::new("strokes", &plain.program, loaded.tables.clone()).unwrap();
+    let record = Recording::new("strokes", &plain.program, loaded.tables.clone(), &[]).unwrap();
     let observer = Observer::new(&plain.program, &[record], &[]).unwrap();
     let problem = Problem {
         program,
@@ -274,7 +274,8 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
         ("guide.F", 250.0),
         ("motor.Jm", 8.4e-3),
     ];
-    let recording = Recording::new("made", program, made(&example, &loaded, &truth, 1.0)).unwrap();
+    let recording =
+        Recording::new("made", program, made(&example, &loaded, &truth, 1.0), &[]).unwrap();
     let recordings = [recording];
     let observer = Observer::new(program, &recordings, &[]).unwrap();
     let p = parameters(program, &[]);

@@ -124,7 +124,16 @@ impl Explicit {
         of: Cell,
         states: &Cells,
     ) -> Option<ExprId> {
-        self.derivative_below(system, id, (of, states), &mut FxHashMap::default(), 0)
+        let mut known = FxHashMap::default();
+        let rate = self.derivative_below(system, id, (of, states), &mut known, 0)?;
+        system.note_differentiated(id);
+        for cell in known.into_keys() {
+            let value = self.value(system, cell);
+            if let Some(value) = value.or_else(|| self.value_of_element(system, cell)) {
+                system.note_differentiated(value);
+            }
+        }
+        Some(rate)
     }
 
     fn derivative_below(
@@ -170,7 +179,7 @@ impl Explicit {
             known.insert(cell, rate);
             rates.insert(cell, rate);
         }
-        Some(super::chain_rule::by_rates(system, id, &rates))
+        Some(super::chain_rule::attempt_by_rates(system, id, &rates))
     }
 }
 

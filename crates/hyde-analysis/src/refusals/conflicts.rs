@@ -63,6 +63,11 @@ diagnostics! {
             _ => { help "remove one of them"; }
         }
     }
+    fn equation_of_assigned(name: &str, equation: Span, when: Span) = error TooManyEquations {
+        "`{name}` has an equation, and a `when` sets it"; at equation, "its equation"; at when, "set here";
+        note "what a `when` sets keeps its value between events: no equation determines it";
+        help "write one of the two: leave the equation out, or set another variable in the `when`";
+    }
     /// So many equations for so many unknowns, of which some have names; parts, connections and open ends that take part in it;
     /// unknowns that are open for it, and one that is set for all times.
     fn conflicting(

@@ -1,7 +1,7 @@
 //! Equations that depend on each other and unknowns that nothing determines, as diagnostics: one cause, one message.
 
 use super::pencil::Pencil;
-use super::words::{Conflict, floating, generic, held_twice, loose, parameter};
+use super::words::{Conflict, assigned, floating, generic, held_twice, loose, parameter};
 use crate::matching::{self, Node, equation_for, missing_boundary, sides, unbound_input};
 use crate::refusals::{place_of, unmatched as refused};
 use crate::system::System;
@@ -35,6 +35,7 @@ pub(super) fn report(
             conflict.open = open.remove(number);
         }
         let diagnostic = parameter(system, &conflict)
+            .or_else(|| assigned(system, &conflict))
             .or_else(|| loose(system, &conflict))
             .or_else(|| floating(system, &conflict))
             .or_else(|| held_twice(system, &conflict))

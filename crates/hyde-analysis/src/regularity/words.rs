@@ -5,6 +5,7 @@ use crate::refusals::conflicts as refused;
 use crate::refusals::words::short;
 use crate::system::System;
 use hyde_diag::{Diagnostic, MadeBy, Origin, Span};
+use hyde_ir::flat::Action;
 use hyde_ir::{Expr, VarId};
 use hyde_units::Dimension;
 
@@ -121,6 +122,32 @@ pub(super) fn loose(system: &System, conflict: &Conflict) -> Option<Diagnostic> 
         .find(|variable| !variable.flow);
     let open = open.map(|variable| variable.name.as_str());
     Some(refused::loose((part, *span), &list, open))
+}
+
+/// A variable that has an equation though a `when` sets it: what such an equation determines is another unknown.
+pub(super) fn assigned(system: &System, conflict: &Conflict) -> Option<Diagnostic> {
+    let setting = |var: VarId| {
+        let sets = |action: &Action| matches!(action, Action::Assign(of, ..) if *of == var);
+        let mut whens = system.flat.whens.iter();
+        whens.find(|when| when.branches.iter().any(|(_, all)| all.iter().any(sets)))
+    };
+    let given = conflict.equations.iter().find_map(|&node| {
+        let mut sides = sides(system, node).into_iter();
+        sides.find_map(|(_, lhs, _)| {
+            let Expr::Var(var, _) = system.flat.exprs[lhs] else {
+                return None;
+            };
+            Some((node, var, setting(var)?))
+        })
+    });
+    let (node, var, when) = given?;
+    let name = short(&system.flat.variables[var].name);
+    let equation = matching::origin(system, node).span;
+    Some(refused::equation_of_assigned(
+        name,
+        equation,
+        when.origin.span,
+    ))
 }
 
 /// Parts that hang on nothing: their flows sum to zero whatever the potentials are.

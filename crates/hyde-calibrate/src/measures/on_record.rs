@@ -132,6 +132,7 @@ fn reason(error: &hyde_experiment::RunError) -> String {
         RunError::EndsBeforeStart {
             start_s, stop_s, ..
         } => format!("it ends at {stop_s} s, before it starts at {start_s} s"),
+        RunError::Lasts(span_s) => format!("it would last {span_s} s"),
         RunError::NotPositive(what, value) => format!("{what} is {value}"),
         RunError::Compare(error) => format!("the channel `{}`: {}", error.channel, error.cause),
     }

@@ -33,8 +33,8 @@ const SHOWN: f64 = 1e-3;
 const ROUNDS: usize = 5;
 
 impl Recording {
-    /// A record for a program in the observed form, with the states that it shows elsewhere than the model starts; none where
-    /// there is no observer.
+    /// A record for a program in the observed form with some values set (position and value), with the states that it shows
+    /// elsewhere than the model starts with them; none where there is no observer.
     ///
     /// # Errors
     /// See [`RecordError`].
@@ -42,26 +42,34 @@ impl Recording {
         name: &str,
         program: &Program,
         tables: BTreeMap<String, Table>,
+        set: &[(usize, f64)],
     ) -> Result<Self, RecordError> {
         let mut recording = Self::read(name, program, tables)?;
-        let mut found = Vec::new();
-        let _none = look(program, &recording, &mut found);
-        recording.beginning = found;
+        recording.begin(program, set);
         Ok(recording)
+    }
+
+    /// Looks again where the record begins, with other values set: a start that is taken from the rows is a start of the model
+    /// with its values.
+    pub fn begin(&mut self, program: &Program, set: &[(usize, f64)]) {
+        let mut found = Vec::new();
+        let _none = look(program, self, set, &mut found);
+        self.beginning = found;
     }
 }
 
 fn look(
     program: &Program,
     recording: &Recording,
+    set: &[(usize, f64)],
     found: &mut Vec<(String, f64)>,
 ) -> Result<(), Unsupported> {
-    let p = recording.parameters(program, &[]);
+    let p = recording.parameters(program, set);
     let noise = (0..recording.channels.len()).map(|channel| deviation(program, channel, &p));
     let noise: Vec<f64> = noise.collect();
     let slipping = Plant::at(program, recording, p, &[])?;
     let mut columns = shares(&slipping, &noise);
-    let mut here = Errors::of(program, recording, &noise, found)?;
+    let mut here = Errors::of(program, recording, set, (&noise, found))?;
     let rms = |channel: usize| {
         let own = here.errors.iter().skip(channel).step_by(noise.len());
         (own.map(|error| error * error).sum::<f64>() / ROWS as f64).sqrt()
@@ -87,7 +95,7 @@ fn look(
                 (kept || *change != 0.0).then(|| (name, here.start[state] + change))
             });
         let moved: Vec<(String, f64)> = moved.collect();
-        let there = Errors::of(program, recording, &noise, &moved)?;
+        let there = Errors::of(program, recording, set, (&noise, &moved))?;
         if there.errors.norm_squared() >= here.errors.norm_squared() {
             break;
         }
@@ -112,10 +120,10 @@ impl<'p> Errors<'p> {
     fn of(
         program: &'p Program,
         recording: &'p Recording,
-        noise: &[f64],
-        beginning: &[(String, f64)],
+        set: &[(usize, f64)],
+        (noise, beginning): (&[f64], &[(String, f64)]),
     ) -> Result<Self, Unsupported> {
-        let mut plant = Plant::beginning(program, recording, &[], beginning)?;
+        let mut plant = Plant::beginning(program, recording, set, beginning)?;
         let (start, shown) = (plant.y.clone(), measured(program));
         let still = vec![0.0; plant.places.states.len()];
         let mut outputs = vec![0.0; noise.len()];

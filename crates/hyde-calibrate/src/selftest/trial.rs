@@ -185,7 +185,7 @@ impl<'a> Axis<'a> {
             interrupted: Arc::clone(&interrupted),
             ..Options::default()
         };
-        let recordings = recordings(program, records, |tables, number| {
+        let recordings = recordings(program, records, &places(program, set), |tables, number| {
             let purpose = format!("reference {number}");
             simulated(&built.program, tables, &options, None, seed, &purpose)
         });
@@ -299,15 +299,8 @@ pub(super) fn judged(
     case: &Case,
     made: &[Records],
 ) -> Result<Judged, SelftestError> {
-    let recordings = recordings(axis.program, made, |tables, _| Ok(tables.clone()))?;
-    let places = {
-        let program = axis.program;
-        let place = |(name, value): &(String, f64)| {
-            let (parameter, element) = program.parameter(name)?;
-            (!parameter.structural).then_some((parameter.place + element, *value))
-        };
-        axis.set.iter().filter_map(place).collect::<Vec<_>>()
-    };
+    let places = places(axis.program, axis.set);
+    let recordings = recordings(axis.program, made, &places, |tables, _| Ok(tables.clone()))?;
     let observer =
         Observer::new(axis.program, &recordings, &places).map_err(SelftestError::Unsupported)?;
     // An effect that the search does not know takes all its sites with it.
@@ -468,14 +461,24 @@ pub(super) fn tables(
     made.collect()
 }
 
+/// The places of what is set from outside in a program, with its values.
+fn places(program: &Program, set: &[(String, f64)]) -> Vec<(usize, f64)> {
+    let place = |(name, value): &(String, f64)| {
+        let (parameter, element) = program.parameter(name)?;
+        (!parameter.structural).then_some((parameter.place + element, *value))
+    };
+    set.iter().filter_map(place).collect()
+}
+
 fn recordings(
     program: &Program,
     records: &[Records],
+    set: &[(usize, f64)],
     mut make: impl FnMut(&Records, usize) -> Result<Records, Simulated>,
 ) -> Result<Vec<Recording>, SelftestError> {
     let each = records.iter().enumerate().map(|(number, tables)| {
         let made = make(tables, number).map_err(SelftestError::Simulation)?;
-        Recording::new(&format!("record {}", number + 1), program, made)
+        Recording::new(&format!("record {}", number + 1), program, made, set)
             .map_err(SelftestError::Record)
     });
     each.collect()

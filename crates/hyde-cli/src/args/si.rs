@@ -16,7 +16,24 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
 /// # Errors
 /// What to write instead, where it is no frequency.
 pub(crate) fn hertz(text: &str) -> Result<f64, String> {
-    value(text, Dimension::FREQUENCY).ok_or_else(|| wanted("a frequency in Hz, `500`", "0.5 [kHz]"))
+    let wanted = || wanted("a frequency in Hz, `500`", "0.5 [kHz]");
+    value(text, Dimension::FREQUENCY).ok_or_else(|| match angular(text) {
+        Some(hertz) => {
+            let hertz = hyde_units::significant(hertz, 6);
+            format!(
+                "it is an angular frequency; {}: `{hertz}` is the same",
+                wanted()
+            )
+        }
+        None => wanted(),
+    })
+}
+
+/// The frequency in Hz of an angular frequency with its unit.
+fn angular(text: &str) -> Option<f64> {
+    let number = text.split_once("[rad/s]")?.0;
+    let value: f64 = number.trim().parse().ok()?;
+    Some(value / std::f64::consts::TAU)
 }
 
 fn wanted(plain: &str, with_unit: &str) -> String {
@@ -52,5 +69,7 @@ mod tests {
         for text in ["500 [rad/s]", "500 [s]"] {
             assert!(hertz(text).unwrap_err().contains("0.5 [kHz]"), "{text}");
         }
+        let refused = hertz("400 [rad/s]").unwrap_err();
+        assert!(refused.contains("`63.662` is the same"), "{refused}");
     }
 }

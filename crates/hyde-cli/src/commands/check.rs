@@ -14,8 +14,8 @@ use hyde_study::Project;
 use serde_json::Value;
 use sweeps::sweeps;
 
-/// Checks every experiment of a file (its records included), or its last model if it has none; all files of a folder. One
-/// that is wrong does not keep the others from being looked at.
+/// Checks every experiment of a file (its records included), or its last model if it has none, and its other classes; all files
+/// of a folder. One that is wrong does not keep the others from being looked at.
 pub(crate) fn check(args: &CheckArgs) -> Exit {
     let folder = files::is_folder(&args.model.file);
     let list = match project::files_of(&args.model) {
@@ -47,7 +47,7 @@ pub(crate) fn check(args: &CheckArgs) -> Exit {
 fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
     let mut found = Found::default();
     let (loaded, each) = project::experiments_of(args, folder)?;
-    if each.is_empty() {
+    if each.is_empty() && !loaded.file.has_classes() {
         return Ok(found);
     }
     let mut visit = |project: &Project, compiled: &Compiled| found.add(project, compiled);
@@ -64,6 +64,7 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         return Err(exit);
     }
     project.print_warnings(args);
+    found.alone = all.alone;
     found.names.extend(sweeps(args, &project)?);
     if let Value::Array(list) = render::to_json(&project.diagnostics, &project.sources) {
         found.warnings = list;

@@ -65,6 +65,7 @@ fn of_library(model: &ModelArgs) -> Result<Library, Exit> {
 fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
     let failed = |reason: String| complain(model, Exit::CommandLine, &reason);
     let mut library = Library::default();
+    let mut beside = Vec::new();
     let places = if files::is_folder(path) {
         if !files::is_file(&path.join(MANIFEST)) {
             return Err(failed(format!(
@@ -82,6 +83,7 @@ fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
         library.title.clone_from(&manifest.name);
         library.text.clone_from(&manifest.description);
         library.facts = facts(manifest);
+        beside = roots.packages_depended_on();
         roots
             .own_packages()
             .into_iter()
@@ -95,13 +97,13 @@ fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
             .into_owned();
         vec![path.to_path_buf()]
     };
+    library.documented = places.len();
     let mut texts = Vec::new();
-    for place in places {
+    for place in places.into_iter().chain(beside) {
         let text = files::read_text(&place).map_err(failed)?;
         texts.push((place.to_string_lossy().into_owned(), text));
     }
-    library.documented = texts.len();
-    // What comes from the library has no page here, but a unit, and is a connector or not.
+    // What comes from dependencies and the library has no page here, but a unit, and is a connector or not.
     texts.extend(library_texts());
     (library.sources, library.files) = parsed(texts, model)?;
     Ok(library)

@@ -22,9 +22,13 @@ pub(super) fn check(args: &ModelArgs) -> Exit {
                     json!({ "test": test.name, "verdict": test.verdict.word().to_lowercase(), "found": test.found })
                 });
                 let list: Vec<_> = list.collect();
+                let unused_in = match args.experiment {
+                    Some(_) => "not_in_experiment",
+                    None => "without_experiment",
+                };
                 print_output(&format!(
                     "{:#}",
-                    json!({ "ok": good, "tests": list, "without_experiment": unused })
+                    json!({ "ok": good, "tests": list, unused_in: unused })
                 ));
             } else if !args.quiet {
                 print_output(&table(&args.file.display().to_string(), &tests));
@@ -34,7 +38,11 @@ pub(super) fn check(args: &ModelArgs) -> Exit {
                     );
                 }
                 if !unused.is_empty() {
-                    print_output(&format!("in no experiment: {}", unused.join(", ")));
+                    let place = match &args.experiment {
+                        Some(experiment) => format!("not in {experiment}"),
+                        None => "in no experiment".to_owned(),
+                    };
+                    print_output(&format!("{place}: {}", unused.join(", ")));
                 }
             }
             if good { Exit::Done } else { Exit::Model }
@@ -43,7 +51,7 @@ pub(super) fn check(args: &ModelArgs) -> Exit {
     }
 }
 
-/// What came of each size of each experiment, and the effects of the file that no experiment has.
+/// What came of each size of each experiment that is asked for, and the effects of the file that none of them has.
 fn tested(args: &ModelArgs) -> Result<(Vec<Tested>, Vec<String>), Exit> {
     let quiet = ModelArgs {
         json: false,

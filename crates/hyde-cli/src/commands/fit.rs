@@ -33,10 +33,10 @@ fn told(args: &FitArgs) -> Result<Exit, Exit> {
     let asked = profiled(&args.profiles, &calibration).map_err(wrong)?;
     let reached: Arc<Reached> = Arc::default();
     let mut watch = None;
-    let told = |before: &Identifiability| {
-        watch = begun(args, &calibration, before, &reached);
+    let told = |calibration: &JointCalibration, before: &Identifiability| {
+        watch = begun(args, calibration, before, &reached);
     };
-    let found = calibrated(&calibration, &asked, &reached, told);
+    let found = calibrated(&mut calibration, &asked, &reached, told);
     drop(watch);
     let Calibrated {
         before,

@@ -5,7 +5,7 @@ use crate::files;
 use crate::output::print_error;
 use hyde_mcp::{Host, Ran};
 use std::io::{BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -15,7 +15,7 @@ use std::time::Duration;
 pub(crate) fn mcp() -> Exit {
     let mut input = BufReader::new(std::io::stdin());
     let mut output = std::io::stdout();
-    match hyde_mcp::serve(&mut input, &mut output, &Machine) {
+    match hyde_mcp::serve(&mut input, &mut output, &Machine::new()) {
         Ok(()) => Exit::Done,
         Err(error) => {
             print_error(&format!("error: {}", files::reason(&error)));
@@ -36,7 +36,23 @@ fn text(stream: Option<impl Read>, _ended: mpsc::Sender<()>) -> String {
 }
 
 /// What the server needs of the machine.
-struct Machine;
+struct Machine {
+    /// The folder with those of the calls. Another server of this process number may have left one.
+    folder: PathBuf,
+}
+
+impl Machine {
+    fn new() -> Self {
+        let own = format!("hyde-mcp-{}", std::process::id());
+        let further = (2_u64..).map(|number| format!("{own}-{number}"));
+        let names = std::iter::once(own.clone()).chain(further);
+        let mut folders = names.map(|name| std::env::temp_dir().join(name));
+        let free = folders.find(|folder| !folder.exists());
+        Self {
+            folder: free.unwrap_or_else(std::env::temp_dir),
+        }
+    }
+}
 
 impl Host for Machine {
     fn run(&self, arguments: &[String], cancelled: &AtomicBool) -> Result<Ran, String> {
@@ -76,8 +92,7 @@ impl Host for Machine {
         Ok(path.display().to_string())
     }
 
-    fn folder(&self) -> String {
-        let name = format!("hyde-mcp-{}", std::process::id());
-        std::env::temp_dir().join(name).display().to_string()
+    fn folder(&self, call: usize) -> String {
+        self.folder.join(call.to_string()).display().to_string()
     }
 }

@@ -2,11 +2,16 @@
 
 use hyde_diag::FileId;
 use hyde_program::{Parameter, Prior, Program};
-use hyde_units::{Kind, significant};
+use hyde_units::{Kind, NamedUnit, significant};
 use serde_json::{Value, json};
 
 /// Steps from one end of a slider to the other.
 const STEPS: f64 = 200.0;
+
+/// A slider of a temperature goes so far to both sides, K: twice the value has no meaning for one.
+const TEMPERATURE_K: f64 = 50.0;
+/// Values in K from here on are temperatures, smaller ones may be differences.
+const LEAST_TEMPERATURE_K: f64 = 150.0;
 
 /// The sliders of a program with the values that it has, uncertain parameters first.
 pub(super) fn sliders(program: &Program, values: &[f64], own: Option<FileId>) -> Vec<Value> {
@@ -41,14 +46,8 @@ fn slider(parameter: &Parameter, si: f64) -> Value {
     let (mut low, mut high) = match (parameter.range, spread) {
         (Some(range), _) => range,
         (None, Some(spread)) => (si - 4.0 * spread, si + 4.0 * spread),
-        (None, None) if si == 0.0 => (unit.to_si(-1.0), unit.to_si(1.0)),
-        (None, None) => (si.min(2.0 * si), si.max(2.0 * si)),
+        (None, None) => around(&parameter.unit, si),
     };
-    if parameter.range.is_none() && spread.is_none() && si > 0.0 {
-        low = 0.0;
-    } else if parameter.range.is_none() && spread.is_none() && si < 0.0 {
-        high = 0.0;
-    }
     low = parameter
         .allowed
         .min
@@ -75,4 +74,40 @@ fn slider(parameter: &Parameter, si: f64) -> Value {
         "spread": spread.map(|spread| [shown(si - spread), shown(si + spread)]),
         "source": parameter.source,
     })
+}
+
+/// From where to where a value without a range and a spread can be moved, SI: from 0 to twice the value.
+fn around(unit: &NamedUnit, si: f64) -> (f64, f64) {
+    let is_temperature =
+        unit.unit().is_absolute() || (unit.text() == "K" && si >= LEAST_TEMPERATURE_K);
+    match (is_temperature, si == 0.0) {
+        (true, _) => ((si - TEMPERATURE_K).max(0.0), si + TEMPERATURE_K),
+        (false, true) => (unit.unit().to_si(-1.0), unit.unit().to_si(1.0)),
+        (false, false) => (0.0_f64.min(2.0 * si), 0.0_f64.max(2.0 * si)),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
+mod tests {
+    use super::around;
+    use hyde_units::{NamedUnit, significant};
+
+    #[test]
+    fn a_temperature_is_moved_about_its_value() {
+        let ends = |unit: &str, value: f64| {
+            let unit = NamedUnit::parse(unit).unwrap();
+            let (low, high) = around(&unit, unit.unit().to_si(value));
+            [low, high].map(|end| significant(unit.unit().from_si(end), 3))
+        };
+        assert_eq!(ends("degC", 20.0), ["-30", "70"]);
+        assert_eq!(ends("degC", 0.0), ["-50", "50"]);
+        assert_eq!(ends("K", 293.0), ["243", "343"]);
+        assert_eq!(ends("degC", -270.0), ["-273", "-220"]);
+        // A difference, and a length.
+        assert_eq!(ends("K", 20.0), ["0", "40"]);
+        assert_eq!(ends("mm", 3.0), ["0", "6"]);
+        assert_eq!(ends("mm", -3.0), ["-6", "0"]);
+        assert_eq!(ends("mm", 0.0), ["-1", "1"]);
+    }
 }

@@ -54,6 +54,9 @@ fn an_effect_that_vanishes_with_its_size_passes_and_another_does_not() {
         printed.contains("in no experiment: Step, Idle"),
         "{printed}"
     );
+    // Others may be in another experiment.
+    let printed = text(&hyde(&["effects", &drag, "shove", "--check"]));
+    assert!(printed.contains("\nnot in shove: Step, Idle"), "{printed}");
     let step = folder.file("step.hyde", &SLED.replace("EFFECT", "Step"));
     let output = hyde(&["effects", &step, "--check"]);
     assert_eq!(status(&output), 1);

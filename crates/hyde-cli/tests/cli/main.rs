@@ -9,6 +9,7 @@
 mod analyses;
 mod command;
 mod diagnose;
+mod documented;
 mod effects;
 mod excite;
 mod excite_model;
@@ -18,6 +19,7 @@ mod fmt;
 mod live;
 mod long_runs;
 mod lsp;
+mod modelica;
 
 mod parquet;
 mod plot;

@@ -146,6 +146,18 @@ impl Plan {
         numbers.collect()
     }
 
+    /// The same of what compiles anew: all cases of a variant have these.
+    #[must_use]
+    pub fn structural_settings(&self, case: &Case) -> Vec<(String, f64)> {
+        let structural = |name: &String| {
+            let mut own = self.inputs.iter().filter(|input| input.name == *name);
+            own.any(|input| input.structural)
+        };
+        let mut settings = self.settings(case);
+        settings.retain(|(name, _)| structural(name));
+        settings
+    }
+
     /// Which program a case needs.
     #[must_use]
     pub fn variant(&self, case: &Case) -> Variant {

@@ -3,7 +3,8 @@
 use super::dataset::Dataset;
 use super::outcome::{Outcome, Trajectory};
 use crate::measures::{Missing, measures};
-use crate::run::{Options, RunError, setup, within_bounds};
+use crate::run::{Options, setup, within_bounds};
+use crate::run_error::RunError;
 use hyde_program::Program;
 use hyde_signal::Table;
 use std::collections::BTreeMap;

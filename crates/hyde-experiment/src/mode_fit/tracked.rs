@@ -139,6 +139,23 @@ impl Model {
     }
 }
 
+/// How far a damping ratio over the measured one is from it, and the slope of that. It is the relative error from half of the
+/// measured one on. Far below, where a relative error hardly changes with a damping, it goes on with the logarithm, and next
+/// to zero straight on: a model may grow.
+fn damping_apart(part: f64) -> (f64, f64) {
+    const NEAR: f64 = 0.5;
+    const LEAST: f64 = 1e-4;
+    if part >= NEAR {
+        return (part - 1.0, 1.0);
+    }
+    let logarithm = |part: f64| NEAR - 1.0 + NEAR * (part / NEAR).ln();
+    let slope = NEAR / part.max(LEAST);
+    match part >= LEAST {
+        true => (logarithm(part), slope),
+        false => (logarithm(LEAST) + slope * (part - LEAST), slope),
+    }
+}
+
 /// The paired modes at some values, what is left of the measurement, and its derivatives.
 #[derive(Clone)]
 pub(super) struct Tracked {
@@ -184,10 +201,10 @@ impl Tracked {
                 .collect();
             rows.push((apart / measured.spread, by));
             if let Some((ratio, spread)) = measured.damping {
-                // zeta = -cos(arg s): d zeta = sin(arg s) d arg s. A model may grow, so no logarithm.
-                let slope = value.im / value.norm() / (ratio * spread);
+                // zeta = -cos(arg s): d zeta = sin(arg s) d arg s.
+                let (apart, change) = damping_apart(mode.damping / ratio);
+                let slope = change * value.im / value.norm() / (ratio * spread);
                 let by = logarithms.iter().map(|by| slope * by.im).collect();
-                let apart = mode.damping / ratio - 1.0;
                 dampings.push((apart / spread, by));
             }
         }
@@ -246,5 +263,32 @@ impl Tracked {
             }
         });
         pairs.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damping_far_below_the_measured_one_is_as_well_seen_as_one_nearby() {
+        // The relative error nearby, as ever.
+        assert!((damping_apart(1.2).0 - 0.2).abs() < 1e-12);
+        assert!((damping_apart(0.5).0 + 0.5).abs() < 1e-12);
+        // A tenth more of the damping is worth about as much, however far it is.
+        for part in [0.3, 0.03, 0.003] {
+            let gain = damping_apart(1.1 * part).0 - damping_apart(part).0;
+            assert!((gain - 0.5 * 1.1_f64.ln()).abs() < 1e-12, "{part}");
+        }
+        // The slope is that of what it belongs to, also of a model that grows.
+        for part in [2.0, 0.5, 0.4, 1e-4, 1e-5, -0.3] {
+            let step = 1e-6 * f64::max(f64::abs(part), 1e-4);
+            let (low, high) = (damping_apart(part - step).0, damping_apart(part + step).0);
+            let slope = damping_apart(part).1;
+            assert!(
+                ((high - low) / (2.0 * step) / slope - 1.0).abs() < 1e-4,
+                "{part}"
+            );
+        }
     }
 }

@@ -4,14 +4,15 @@ use super::collect::Collected;
 use super::declarator::length;
 use super::effect::replaced;
 use super::modification::{
-    Modifier, check_components, modifiers_for, modifiers_for_components, modifiers_of,
+    Modifier, check_components, drop_replaced, modifiers_for, modifiers_for_components,
+    modifiers_of, of_no_component,
 };
 use super::{Place, instantiate};
 use crate::instance::{InstanceId, Member, Position};
 use crate::model::Model;
 use crate::names::{FileIndex, Names};
 use crate::refusals::instantiate as refused;
-use hyde_diag::{Diagnostics, InstancePath};
+use hyde_diag::{Diagnostics, InstancePath, Span};
 use hyde_syntax::ast::{Class, ClassKind, Declaration, Declarator, Prefix};
 
 pub(super) fn declare_component<'a>(
@@ -49,7 +50,7 @@ pub(super) fn declare_component<'a>(
     modifiers_of(model, &declarator.changes, id, &mut inner);
     let by_effect = replaced(model, id, declaration, declarator, &mut inner);
     let class = by_effect.unwrap_or((file, class));
-    let Some((file, class)) = redeclared(
+    let Some(((file, class), chosen)) = redeclared(
         model.names,
         model.diagnostics,
         declaration,
@@ -60,6 +61,7 @@ pub(super) fn declare_component<'a>(
         model.undeclared.insert(name);
         return;
     };
+    drop_replaced(model, chosen, &mut inner);
     let (path, clock) = (model.tree.path(id), model.clock_of(id));
     let place = |path: InstancePath| Place {
         path,
@@ -73,6 +75,9 @@ pub(super) fn declare_component<'a>(
             model.tree.name(id, name, Member::Instance(part));
         }
         Some(count) => {
+            if count == 0 {
+                of_no_component(model, &inner);
+            }
             let mut parts = Vec::new();
             for index in 0..count {
                 let position = Position {
@@ -89,7 +94,7 @@ pub(super) fn declare_component<'a>(
     }
 }
 
-/// The class of a component: that of the outermost redeclaration, if there is one.
+/// The class of a component: that of the outermost redeclaration, if there is one, with the place of its name there.
 fn redeclared<'a>(
     names: Names<'a>,
     diagnostics: &mut Diagnostics,
@@ -97,13 +102,13 @@ fn redeclared<'a>(
     declarator: &Declarator,
     modifiers: &[Modifier<'a>],
     declared: (FileIndex, &'a Class),
-) -> Option<(FileIndex, &'a Class)> {
+) -> Option<((FileIndex, &'a Class), Option<Span>)> {
     let redeclaration = modifiers.iter().find_map(|modifier| {
         let new = modifier.change.redeclare.as_ref()?;
         modifier.is_of_itself().then_some((modifier, new))
     });
     let Some((modifier, new)) = redeclaration else {
-        return Some(declared);
+        return Some((declared, None));
     };
     if !declaration.prefixes.contains(&Prefix::Replaceable) {
         let here = modifier.change.target.span;
@@ -117,5 +122,5 @@ fn redeclared<'a>(
         let diagnostic = names.unknown(file, new);
         diagnostics.push(diagnostic);
     }
-    class
+    Some((class?, Some(new.span)))
 }

@@ -27,6 +27,13 @@ impl PartialEq for Number {
     }
 }
 
+/// The model that `redeclare` chooses, where its name stands, and how many words of the way are behind its component.
+#[derive(Clone, Copy)]
+struct Chosen {
+    model: Span,
+    behind: usize,
+}
+
 /// A modification of something below an instance, with the scope its value stands in.
 #[derive(Clone)]
 pub(super) struct Modifier<'a> {
@@ -41,6 +48,8 @@ pub(super) struct Modifier<'a> {
     pub(super) elements: Vec<Position>,
     /// For how many arrays of components on its way it holds whole: once for each `each`.
     pub(super) each: usize,
+    /// The models that it goes with: it stands in the brackets behind them.
+    with: Vec<Chosen>,
     /// Index into the model's list of modifications, to tell which were used.
     pub(super) number: usize,
 }
@@ -139,6 +148,31 @@ pub(super) fn check_components(
     }
 }
 
+/// Drops the modifications of a component that go with a model which another redeclaration of it has replaced: `d.c = 4` of
+/// `redeclare Quad d(c = 4)` where `d` has become a `Lin`.
+pub(super) fn drop_replaced(
+    model: &mut Model<'_, '_>,
+    chosen: Option<Span>,
+    modifiers: &mut Vec<Modifier<'_>>,
+) {
+    modifiers.retain(|modifier| {
+        let words = modifier.target.len();
+        let mut own = modifier.with.iter().filter(|with| with.behind == words);
+        let stays = own.all(|with| Some(with.model) == chosen);
+        if !stays {
+            model.making.modifications[modifier.number].2 = true;
+        }
+        stays
+    });
+}
+
+/// Marks the modifications of an array of components that has none: there is nothing that they could change.
+pub(super) fn of_no_component(model: &mut Model<'_, '_>, modifiers: &[Modifier<'_>]) {
+    for modifier in modifiers {
+        model.making.modifications[modifier.number].2 = true;
+    }
+}
+
 /// Nested changes as a list of single ones. Those of one component of an array come before those of all.
 pub(super) fn modifiers_of<'a>(
     model: &mut Model<'a, '_>,
@@ -147,7 +181,12 @@ pub(super) fn modifiers_of<'a>(
     out: &mut Vec<Modifier<'a>>,
 ) {
     let mut own = Vec::new();
-    modifiers_below(model, changes, scope, (&[], 0), &mut own);
+    let outermost = Way {
+        words: Vec::new(),
+        each: 0,
+        with: Vec::new(),
+    };
+    modifiers_below(model, changes, scope, &outermost, &mut own);
     let of_all = |modifier: &Modifier<'_>| {
         let mut words = modifier.target.iter();
         words.all(|word| word.component.is_none())
@@ -162,19 +201,35 @@ pub(super) fn modifiers_of<'a>(
     out.extend(own);
 }
 
+/// The words around nested changes, how many `each` and which chosen models are among them; the models with the number of
+/// words up to their component.
+struct Way<'a> {
+    words: Vec<Word<'a>>,
+    each: usize,
+    with: Vec<(Span, usize)>,
+}
+
 fn modifiers_below<'a>(
     model: &mut Model<'a, '_>,
     changes: &'a [Change],
     scope: InstanceId,
-    (above, each): (&[Word<'a>], usize),
+    above: &Way<'a>,
     out: &mut Vec<Modifier<'a>>,
 ) {
     for change in changes {
-        let Some(target) = way(model, above, change) else {
+        let Some(target) = way(model, &above.words, change) else {
             continue;
         };
-        let each = each + usize::from(change.each);
-        modifiers_below(model, &change.changes, scope, (&target, each), out);
+        let each = above.each + usize::from(change.each);
+        let mut inner = Way {
+            words: target.clone(),
+            each,
+            with: above.with.clone(),
+        };
+        if let Some(chosen) = &change.redeclare {
+            inner.with.push((chosen.span, target.len()));
+        }
+        modifiers_below(model, &change.changes, scope, &inner, out);
         if change.redeclare.is_some()
             || change.value.is_some()
             || change.prior.is_some()
@@ -186,7 +241,12 @@ fn modifiers_below<'a>(
                 .making
                 .modifications
                 .push((change.target.span, names.join("."), false));
+            let chosen = |&(model, words): &(Span, usize)| Chosen {
+                model,
+                behind: target.len() - words,
+            };
             out.push(Modifier {
+                with: above.with.iter().map(chosen).collect(),
                 target,
                 component: None,
                 change,

@@ -213,7 +213,10 @@ impl<'a> Model<'a, '_> {
                         period = Some(value.id);
                         self.check_period(&value);
                     }
-                    Some("delay") => self.flat.clocks[clock].delay = value.id,
+                    Some("delay") => {
+                        self.flat.clocks[clock].delay = value.id;
+                        self.check_delay(&value);
+                    }
                     Some("phase") => self.flat.clocks[clock].phase = value.id,
                     Some(other) => {
                         self.report(refused::unknown_part_of_clock(other, argument.value.span))
@@ -234,6 +237,16 @@ impl<'a> Model<'a, '_> {
         {
             let shown = hyde_units::engineering(value, Dimension::TIME);
             self.report(refused::bad_period(&shown, period.span));
+        }
+    }
+
+    /// A clock gives out what it computed at a tick not before that tick.
+    fn check_delay(&mut self, delay: &Typed) {
+        if let Some(value) = self.current_value(delay.id)
+            && value < 0.0
+        {
+            let shown = hyde_units::engineering(value, Dimension::TIME);
+            self.report(refused::bad_delay(&shown, delay.span));
         }
     }
 

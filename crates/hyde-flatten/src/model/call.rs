@@ -378,7 +378,12 @@ impl<'a> Model<'a, '_> {
     ) -> Option<[&'a Expr; N]> {
         let found = <[&'a Expr; N]>::try_from(args).ok();
         if found.is_none() {
-            let numbers = (N, args.len());
+            // Of two values, or of one signal over a run, or over a part of it.
+            let takes = match name {
+                "min" | "max" | "rms" | "mean" | "first" | "last" => "1 or 2".to_owned(),
+                _ => N.to_string(),
+            };
+            let numbers = (takes, args.len());
             self.report(refused::number_of_arguments(
                 name,
                 numbers,

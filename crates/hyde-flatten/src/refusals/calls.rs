@@ -11,9 +11,9 @@ diagnostics! {
         help "give the arguments in their order, without names";
     }
     fn number_of_arguments(
-        function: &str, (takes, given): (usize, usize), here: Span, usage: Option<&str>,
+        function: &str, (takes, given): (String, usize), here: Span, usage: Option<&str>,
     ) = error BadArguments {
-        "`{function}` takes {takes} argument{}, not {given}", match takes { 1 => "", _ => "s" }; at here, "called here";
+        "`{function}` takes {takes} argument{}, not {given}", match takes.as_str() { "1" => "", _ => "s" }; at here, "called here";
         if let Some(usage) = usage { help "write `{usage}`"; }
     }
     /// `instead` is what to write where it looks like something else.
@@ -161,6 +161,11 @@ diagnostics! {
     fn reduction_outside_measure(name: &str, here: Span) = error BadArguments {
         "`{name}` of a signal has a meaning over a whole run only"; at here, "not in a measure or expectation";
         help "write it in `measure` or `expect`";
+    }
+    fn reduction_of_reduction(outer: &str, inner: &str, here: Span) = error BadArguments {
+        "`{inner}` inside `{outer}`: a number of the whole run within another one";
+        at here, "is known at the end of the run only, and `{outer}` reads a value at each time";
+        help "write its value here as a number with its unit: run the experiment with `measure` of it first";
     }
     fn sum_of_one(here: Span) = error BadShape {
         "`sum` takes an array"; at here, "one value";

@@ -62,6 +62,10 @@ diagnostics! {
     fn position_of_no_field(name: &Reference) = error FieldUse {
         "`{}` is not a field", name.dotted(); at name.span, "only a field can be read at a position";
     }
+    fn no_length(domain: &str, here: Span) = error NotAllowed {
+        "the domain `{domain}` has no length"; at here, "its upper end is not above its lower end";
+        help "write the lower end first: `domain {domain}(x in 0 .. 1 [m]);`";
+    }
     fn needs_place(field: &str, here: Span) = error FieldUse {
         "the field `{field}` has no single value"; at here, "at which position?";
         help "read it at a position, `{}.at(xn)`, or write the equation `indomain …`",

@@ -87,6 +87,10 @@ diagnostics! {
         "a clock cannot tick every {shown}"; at here, "the period must be above 0 s";
         help "write the time from tick to tick: `clocked name(1 [ms])`";
     }
+    fn bad_delay(shown: &str, here: Span) = error NotAllowed {
+        "a clock cannot have a delay of {shown}"; at here, "`delay` must be 0 s or more";
+        help "write the time from a tick to what it gives out, `delay = 0.1 [ms]`; a tick that comes earlier has a `phase`";
+    }
     /// `class` is that of the connector or component; `variable` one of its own.
     fn part_as_value(
         path: &str, here: Span, (class, connector): (&str, bool), variable: Option<&str>,

@@ -18,13 +18,16 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
     let first_account = columns - ledger::columns(&known.ledger);
     let first_curve = first_account - figures::outputs(&known.figures);
     let first_cut = first_curve - known.cuts.len();
-    let conditions = known.conditions().count();
-    let first_reduction = first_cut - known.reductions.len() - conditions - responses;
+    let (conditions, margins) = (known.conditions().count(), known.margins().count());
+    let first_response = first_cut - responses;
+    let first_margin = first_response - margins;
+    let first_reduction = first_margin - conditions - known.reductions.len();
     let first_replayed = first_reduction - 2 * known.replayed.len();
     let first_measured = first_replayed - known.measured.len();
     let first_condition = first_reduction + known.reductions.len();
     let mut conditions_before = first_condition..;
-    let mut next_response = first_condition + conditions;
+    let mut margins_before = first_margin..;
+    let mut next_response = first_response;
     Experiment {
         name: known.name.clone(),
         records: known.records.clone(),
@@ -68,6 +71,10 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                 text: dae.variables[reduction.var].name.to_string(),
                 output,
                 condition: reduction.condition.and_then(|_| conditions_before.next()),
+                margins: margins_before
+                    .by_ref()
+                    .take(reduction.margins.len())
+                    .collect(),
             })
             .collect(),
         measures: known

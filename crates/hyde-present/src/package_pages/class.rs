@@ -2,6 +2,7 @@
 
 use super::Library;
 use super::html::{code, documentation, escaped, table};
+use super::inherited::{Changed, Inherited, texts};
 use super::links::Links;
 use hyde_diag::Span;
 use hyde_syntax::ast::{
@@ -33,9 +34,11 @@ pub(super) fn class(class: &Class, number: usize, library: &Library, links: &Lin
                 links,
                 tables: Default::default(),
             };
-            members.of_elements(elements, number, None, &[]);
+            html += &members.extended(elements, number);
+            members.of_elements(elements, number, &Inherited::default());
             html += &members.html();
             html += &written(&equations(elements, library));
+            html += &initial(elements, library);
             html += &marks(elements);
             html += &fits_on(class, number, library, links);
         }
@@ -96,30 +99,23 @@ struct Members<'l> {
 }
 
 impl<'l> Members<'l> {
-    fn of_elements(
-        &mut self,
-        elements: &'l [Element],
-        number: usize,
-        from: Option<&str>,
-        below: &[&'l Class],
-    ) {
+    fn of_elements(&mut self, elements: &'l [Element], number: usize, inherited: &Inherited<'l>) {
         for element in elements {
-            if let Element::Extends(base, _) = element
+            if let Element::Extends(base, changes) = element
                 && let Some((number, class)) = self.links.class(number, base)
                 && let ClassBody::Long { elements, .. } = &class.body
-                && !below.iter().any(|known| std::ptr::eq(*known, class))
+                && let Some(inherited) = inherited.through(class, changes)
             {
-                let below = [below, &[class]].concat();
-                self.of_elements(elements, number, Some(&class.name.text), &below);
+                self.of_elements(elements, number, &inherited);
             }
             for (name, declared) in element.declared() {
                 match declared {
                     Declared::Variable(declaration, item) => {
-                        self.variable((declaration, item), number, from);
+                        self.variable((declaration, item), number, inherited);
                     }
                     Declared::Clocked(clocked) => {
-                        let name = format!("in `{}`", name.text);
-                        self.of_elements(&clocked.elements, number, Some(&name), below);
+                        let inherited = inherited.in_part(&name.text);
+                        self.of_elements(&clocked.elements, number, &inherited);
                     }
                     Declared::Domain(_)
                     | Declared::Coordinate(_)
@@ -130,12 +126,35 @@ impl<'l> Members<'l> {
         }
     }
 
+    /// What a class extends, with the changes written there.
+    fn extended(&self, elements: &[Element], number: usize) -> String {
+        let mut html = String::new();
+        for element in elements {
+            let Element::Extends(base, changes) = element else {
+                continue;
+            };
+            let name = self.links.to_class(number, base);
+            let changes = texts(&self.library.sources, changes);
+            let with = match changes.is_empty() {
+                true => String::new(),
+                false => format!(" with <code>{}</code>", escaped(&changes)),
+            };
+            let unknown = match self.links.class(number, base) {
+                Some(_) => "",
+                None => "; its members are not shown",
+            };
+            html += &format!("<p class=\"note\">extends {name}{with}{unknown}</p>\n");
+        }
+        html
+    }
+
     fn variable(
         &mut self,
         (declaration, item): (&'l Declaration, &'l Declarator),
         number: usize,
-        from: Option<&str>,
+        inherited: &Inherited<'l>,
     ) {
+        let changed = inherited.changed(&self.library.sources, &item.name.text);
         let has = |prefix| declaration.prefixes.contains(&prefix);
         let class = self.links.class(number, &declaration.type_name);
         let quantity = [Prefix::Flow, Prefix::Site, Prefix::Field];
@@ -149,11 +168,13 @@ impl<'l> Members<'l> {
             None => 5,
         };
         let of = match kind {
+            0 | 4 if let Some(model) = changed.model => escaped(&model.dotted()),
             0 | 4 => self.links.to_class(number, &declaration.type_name),
             _ => self.links.to_quantity(number, &declaration.type_name),
         };
         let unit = self.links.unit(number, &declaration.type_name);
-        let row = self.row(declaration, item, (of, unit), from);
+        let from = inherited.from(&changed);
+        let row = self.row(declaration, item, (of, unit), (changed, from));
         self.tables[kind].push(row);
     }
 
@@ -163,7 +184,7 @@ impl<'l> Members<'l> {
         declaration: &Declaration,
         item: &Declarator,
         (of, unit): (String, String),
-        from: Option<&str>,
+        (changed, from): (Changed<'_>, Option<String>),
     ) -> Vec<String> {
         let text =
             |span: Span| format!("<code>{}</code>", escaped(self.library.sources.text(span)));
@@ -179,18 +200,6 @@ impl<'l> Members<'l> {
         } else {
             format!("[{}]", escaped(&dims.join(", ")))
         };
-        let changes: Vec<String> = item
-            .changes
-            .iter()
-            .map(|change| {
-                let value = change.value.as_ref();
-                let value = value.map_or_else(String::new, |value| {
-                    format!(" = {}", self.library.sources.text(value.span))
-                });
-                let target = hyde_syntax::format_reference(&change.target);
-                format!("<code>{}</code>", escaped(&format!("{target}{value}")))
-            })
-            .collect();
         let words = declaration.prefixes.iter();
         let words = words.filter(|prefix| **prefix != Prefix::Parameter);
         let words: Vec<&str> = words.map(|prefix| prefix.word()).collect();
@@ -202,20 +211,22 @@ impl<'l> Members<'l> {
                 .map(|word| format!(" <i>{word}</i>"))
                 .collect::<String>()
         );
-        let inherited = from.map_or_else(String::new, |from| {
-            let from = if from.starts_with("in ") {
-                from.to_owned()
-            } else {
-                format!("from `{from}`")
-            };
-            format!(" <i>{}</i>", code(&from))
-        });
+        let inherited = from.map_or_else(String::new, |from| format!(" <i>{}</i>", code(&from)));
         let doc = code(item.doc.as_deref().unwrap_or_default()) + &inherited;
         let range = item.within.as_ref().map(|range| {
             let (from, to) = (text(range.from.span), text(range.to.span));
             format!("{from} … {to}")
         });
-        let spread = item.prior.as_ref().map(|prior| {
+        // The spread and the source of the declared value are not those of another one.
+        let (value, prior, source) = match changed.value {
+            Some(value) => (Some(value), changed.prior, changed.source),
+            None => (
+                item.binding.as_ref(),
+                item.prior.as_ref(),
+                item.source.as_deref(),
+            ),
+        };
+        let spread = prior.map(|prior| {
             let spread = self.library.sources.text(prior.span);
             escaped(spread.trim_start_matches(['~', ' ']))
         });
@@ -224,12 +235,14 @@ impl<'l> Members<'l> {
             name,
             of,
             unit,
-            expr(item.binding.as_ref()),
+            expr(value),
             range.unwrap_or_default(),
             spread.unwrap_or_default(),
-            changes.join(", "),
+            changed
+                .with(&self.library.sources, &item.changes)
+                .join(", "),
             over.join(", "),
-            code(item.source.as_deref().unwrap_or_default()),
+            code(source.unwrap_or_default()),
             doc,
         ]
     }
@@ -328,9 +341,7 @@ fn equations<'l>(elements: &'l [Element], library: &'l Library) -> Vec<&'l str> 
     let mut found = Vec::new();
     for element in elements {
         let span = match element {
-            Element::Equation(equation)
-            | Element::InitialEquation(equation)
-            | Element::Add(equation) => equation.span,
+            Element::Equation(equation) | Element::Add(equation) => equation.span,
             Element::Modes(modes) => modes.span,
             Element::Clocked(clocked) => clocked.span,
             Element::Wrap(site, value) => site.span.to(value.span),
@@ -342,11 +353,37 @@ fn equations<'l>(elements: &'l [Element], library: &'l Library) -> Vec<&'l str> 
             | Element::Discretize(_)
             | Element::Extends(..)
             | Element::Declaration(_)
+            | Element::InitialEquation(_)
             | Element::Measure(_) => continue,
         };
         found.push(library.sources.lines(span));
     }
     found
+}
+
+/// The initial equations, which hold at the start alone.
+fn initial(elements: &[Element], library: &Library) -> String {
+    let equations = elements.iter().filter_map(|element| match element {
+        Element::InitialEquation(equation) => Some(library.sources.lines(equation.span)),
+        Element::Equation(_)
+        | Element::Add(_)
+        | Element::Modes(_)
+        | Element::Clocked(_)
+        | Element::Wrap(..)
+        | Element::Replace(..)
+        | Element::Domain(_)
+        | Element::Account(..)
+        | Element::Signature(_)
+        | Element::Confounds(_)
+        | Element::Discretize(_)
+        | Element::Extends(..)
+        | Element::Declaration(_)
+        | Element::Measure(_) => None,
+    });
+    match written(&equations.collect::<Vec<_>>()) {
+        none if none.is_empty() => none,
+        text => format!("<h4>Initial equations</h4>\n{text}"),
+    }
 }
 
 fn written(texts: &[&str]) -> String {

@@ -31,7 +31,7 @@ pub(super) fn over_time(options: &Options, sources: &[Recorded]) -> Result<Figur
         }
         let (unit, of) = one_unit(all.iter().map(|(.., column)| *column))?;
         let line = |(label, source, column): (String, &Recorded, &Column)| {
-            let time = source.table.holding(column.name()).time();
+            let time = source.table.reading(column.name()).time();
             let rows = window(options, time);
             let x = time[rows.clone()].to_vec();
             let y = column.values()[rows].iter().map(|si| of.from_si(*si));
@@ -70,7 +70,7 @@ pub(super) fn over_each_other(options: &Options, sources: &[Recorded]) -> Result
         for (y, x) in &pairs {
             for source in having(sources, y)? {
                 let label = label(y, pairs.len(), &source.name, sources.len());
-                let times = [x, y].map(|name| source.table.holding(name).time());
+                let times = [x, y].map(|name| source.table.reading(name).time());
                 if times[0] != times[1] {
                     return Err(format!(
                         "`{x}` and `{y}` are sampled at different times: no curve of one over the other is drawn"
@@ -82,7 +82,7 @@ pub(super) fn over_each_other(options: &Options, sources: &[Recorded]) -> Result
         let (x_unit, x_of) = one_unit(all.iter().map(|(_, _, x, _)| *x))?;
         let (y_unit, y_of) = one_unit(all.iter().map(|(.., y)| *y))?;
         let line = |(label, source, x, y): (String, &Recorded, &Column, &Column)| {
-            let rows = window(options, source.table.holding(y.name()).time());
+            let rows = window(options, source.table.reading(y.name()).time());
             let values = |column: &Column, of: Unit| {
                 let values = column.values()[rows.clone()].iter();
                 values.map(|si| of.from_si(*si)).collect()
@@ -192,7 +192,7 @@ fn window(options: &Options, time: &[f64]) -> Range<usize> {
 
 /// The sources that have a column; the first one's complaint if none has.
 fn having<'s>(sources: &'s [Recorded], name: &str) -> Result<Vec<&'s Recorded>, String> {
-    let has = |source: &&Recorded| source.table.column(name).is_some();
+    let has = |source: &&Recorded| source.table.reading(name).column(name).is_some();
     let found: Vec<&Recorded> = sources.iter().filter(has).collect();
     match sources.first() {
         Some(first) if found.is_empty() => Err(unknown(&first.table, name)),
@@ -201,12 +201,16 @@ fn having<'s>(sources: &'s [Recorded], name: &str) -> Result<Vec<&'s Recorded>, 
 }
 
 fn column<'s>(source: &'s Recorded, name: &str) -> Result<&'s Column, String> {
-    let column = source.table.column(name);
+    let column = source.table.reading(name).column(name);
     column.ok_or_else(|| unknown(&source.table, name))
 }
 
-/// That no column has the name, and which have one like it.
+/// That no column has the name, and which have one like it; of a column that cannot be used, why.
 fn unknown(table: &Table, name: &str) -> String {
+    if let Some(known) = table.unusable().iter().find(|known| known.name == name) {
+        let (message, repair) = (&known.fault.message, &known.fault.repair);
+        return format!("`{name}` cannot be plotted: {message}; {repair}");
+    }
     let last = name.rsplit('.').next().unwrap_or(name);
     let names = || table.columns().iter().map(Column::name);
     let near: Vec<&str> = names()

@@ -121,12 +121,15 @@ impl Automaton {
     }
 }
 
-/// The automata that were in one mode all the time, which the log does not have.
+/// The automata that were in one of their modes all the time, which the log does not have.
 fn unchanged(world: &dyn World, summary: &Path) -> Vec<(String, String)> {
     let text = read_text(world, summary).unwrap_or_default();
     let summary: Value = serde_json::from_str(&text).unwrap_or_default();
     let mut found = Vec::new();
     for (name, modes) in summary["mode_seconds"].as_object().into_iter().flatten() {
+        if modes.as_object().is_none_or(|modes| modes.len() < 2) {
+            continue;
+        }
         let spent = |seconds: &Value| seconds.as_f64().is_some_and(|seconds| seconds > 0.0);
         let mut in_use = modes
             .as_object()

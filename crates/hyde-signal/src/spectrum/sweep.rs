@@ -7,12 +7,13 @@ use std::f64::consts::PI;
 
 /// The response of `output` to `input` over one swept sine, samples `dt` (s) apart.
 ///
-/// The straight line through both signals is taken out, the first and last 2 % are faded with a cosine, and H1 is
-/// formed at every line of the whole record from the sums over the `2 * neighbours + 1` lines round it (Bendat and
+/// The straight line through both signals is taken out, they are taken to stay at their first sample for 2 % of their time
+/// before it, these 2 % and the last ones are faded with a cosine, and H1 is formed at every line of the whole from the sums over the `2 * neighbours + 1` lines round it (Bendat and
 /// Piersol, Random Data, 4th ed. 2010: frequency smoothing). More neighbours, less noise and a coarser
 /// resolution of `(2 * neighbours + 1) / duration`; with none the coherence is 1 and means nothing. Only the lines that
 /// the sweep excited are any good: see [`FrequencyResponse::between`]. The record should begin and end at rest, else
-/// the cut transient is in the result.
+/// the cut transient is in the result. What it begins with is not faded: a sweep passes its first frequencies only there,
+/// and an output is late by more than a fade allows for.
 ///
 /// # Errors
 /// If the lengths differ, there are fewer than 16 samples, or `dt` is not positive.
@@ -25,6 +26,7 @@ pub fn swept_response(
     let rate_hz = 1.0 / dt;
     check_pair(input, output, 16, rate_hz)?;
     let mut planner = RealFftPlanner::new();
+    let samples = input.len() + input.len() / FADED;
     let inputs = transform(&mut planner, prepared(input));
     let outputs = transform(&mut planner, prepared(output));
     let lines: Vec<_> = inputs
@@ -36,7 +38,7 @@ pub fn swept_response(
         .map(|line| sum_round(&lines, line, neighbours))
         .collect();
     Ok(FrequencyResponse {
-        frequency_hz: frequencies(input.len(), rate_hz),
+        frequency_hz: frequencies(samples, rate_hz),
         response: smooth.iter().map(CrossPower::response).collect(),
         coherence: smooth.iter().map(CrossPower::coherence).collect(),
     })
@@ -52,7 +54,10 @@ fn sum_round(lines: &[CrossPower], line: usize, neighbours: usize) -> CrossPower
     sum
 }
 
-/// Without its straight line (least squares), faded in and out.
+/// The part of a record before its first sample, and at its end, that is faded: one of so many.
+const FADED: usize = 50;
+
+/// Without its straight line (least squares), with what was before, faded in and out.
 fn prepared(values: &[f64]) -> Vec<f64> {
     let position = |k: usize| k as f64 - 0.5 * (values.len() - 1) as f64;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -63,9 +68,11 @@ fn prepared(values: &[f64]) -> Vec<f64> {
         .sum();
     let inertia: f64 = (0..values.len()).map(|k| position(k) * position(k)).sum();
     let slope = moment / inertia;
-    let fade = values.len() / 50;
-    let weight = |k: usize| {
-        let edge = k.min(values.len() - 1 - k);
+    let fade = values.len() / FADED;
+    let before = std::iter::repeat_n(0, fade);
+    let rows: Vec<usize> = before.chain(0..values.len()).collect();
+    let weight = |place: usize| {
+        let edge = place.min(rows.len() - 1 - place);
         let phase = PI * (edge as f64 + 0.5) / fade.max(1) as f64;
         if edge < fade {
             0.5 - 0.5 * phase.cos()
@@ -73,12 +80,8 @@ fn prepared(values: &[f64]) -> Vec<f64> {
             1.0
         }
     };
-    let detrended = values
-        .iter()
-        .enumerate()
-        .map(|(k, value)| value - mean - slope * position(k));
-    detrended
-        .enumerate()
-        .map(|(k, value)| value * weight(k))
+    let detrended = |k: usize| values[k] - mean - slope * position(k);
+    let all = rows.iter().enumerate();
+    all.map(|(place, &k)| detrended(k) * weight(place))
         .collect()
 }

@@ -272,6 +272,24 @@ fn a_sweep_shows_a_resonance() {
 }
 
 #[test]
+fn a_sweep_shows_the_frequencies_that_it_begins_with() {
+    // From 5 to 200 Hz in 20 s: 5 .. 9 Hz are passed in the first 2 %, and the lag remembers a quarter of that.
+    let (from, to, time_s) = (5.0, 200.0, 20.0);
+    let at = |k: usize| k as f64 / RATE_HZ;
+    let cycles = |t: f64| from * t + 0.5 * (to - from) * t * t / time_s;
+    let count = (time_s * RATE_HZ) as usize;
+    let input: Vec<f64> = (0..count)
+        .map(|k| (2.0 * std::f64::consts::PI * cycles(at(k))).sin())
+        .collect();
+    let lag = Discrete::lag((-1.0 / (0.1 * RATE_HZ)).exp());
+    let output = lag.simulate(&input);
+    let estimate = swept_response(&input, &output, 1.0 / RATE_HZ, 10)
+        .unwrap()
+        .between(from, 150.0);
+    assert!(worst_error(&estimate, |f| lag.response(f)) < 0.02);
+}
+
+#[test]
 fn a_sweep_on_a_slow_feed_shows_it_as_well() {
     let resonance = Discrete::resonance(35.0, 0.1);
     let input = sweep();

@@ -12,6 +12,7 @@ use super::Instant;
 use crate::active::is_active;
 use crate::failure::Failure;
 use crate::moment::Moment;
+use crate::state::State;
 use hyde_program::{Function, RelationUse, Wrt};
 
 /// Solutions tried at most.
@@ -116,7 +117,7 @@ impl Instant<'_, '_> {
         at_start: bool,
     ) -> bool {
         let before = (self.state.z.clone(), self.now.clone());
-        let free = self.relations_in_loops(&branches.z);
+        let free = relations_in_loops(self.state, &branches.z);
         let mut tried = 0;
         for count in 0..=free.len() {
             let mut chosen: Vec<usize> = (0..count).collect();
@@ -159,30 +160,30 @@ impl Instant<'_, '_> {
         });
         of_equations.all(|(number, _)| known.truths[number] == (self.state.z[number] != 0.0))
     }
+}
 
-    /// The relations of equations that read what consistent values determine. Those that changed since come first.
-    fn relations_in_loops(&self, before: &[f64]) -> Vec<usize> {
-        let program = self.state.program;
-        let mut reads = vec![false; program.relations.len()];
-        for entry in program.partials(Function::Roots) {
-            reads[entry.row] |= match entry.wrt {
-                Wrt::Unknown(column) => !self.state.differential[column],
-                Wrt::Derivative(_) => true,
-                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => false,
-            };
-        }
-        let mut found: Vec<usize> = (0..reads.len())
-            .filter(|&number| {
-                let relation = &program.relations[number];
-                reads[number]
-                    && relation.used == RelationUse::Equation
-                    && !relation.scheduled
-                    && is_active(self.state, number)
-            })
-            .collect();
-        found.sort_by_key(|&number| self.state.z[number].to_bits() == before[number].to_bits());
-        found
+/// The relations of equations that read what consistent values determine. Those that changed since `before` come first.
+pub(crate) fn relations_in_loops(state: &State<'_>, before: &[f64]) -> Vec<usize> {
+    let program = state.program;
+    let mut reads = vec![false; program.relations.len()];
+    for entry in program.partials(Function::Roots) {
+        reads[entry.row] |= match entry.wrt {
+            Wrt::Unknown(column) => !state.differential[column],
+            Wrt::Derivative(_) => true,
+            Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => false,
+        };
     }
+    let mut found: Vec<usize> = (0..reads.len())
+        .filter(|&number| {
+            let relation = &program.relations[number];
+            reads[number]
+                && relation.used == RelationUse::Equation
+                && !relation.scheduled
+                && is_active(state, number)
+        })
+        .collect();
+    found.sort_by_key(|&number| state.z[number].to_bits() == before[number].to_bits());
+    found
 }
 
 /// The relations that are not the same all the way round.
@@ -196,7 +197,7 @@ fn turned_in(circle: &[Seen], n_relations: usize) -> Vec<usize> {
 }
 
 /// The next choice of as many numbers below `n`, ascending in itself; whether there is one.
-fn next_choice(chosen: &mut [usize], n: usize) -> bool {
+pub(crate) fn next_choice(chosen: &mut [usize], n: usize) -> bool {
     let count = chosen.len();
     for place in (0..count).rev() {
         if chosen[place] < n - (count - place) {

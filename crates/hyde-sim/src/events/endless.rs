@@ -7,14 +7,16 @@ use crate::root_rates::root_rates;
 use hyde_program::{ReactionKind, RelationUse, Target};
 
 impl Instant<'_, '_> {
-    /// Whether a reaction leads to another mode and no more. One that lets a state jump, as an impact does, may come back to
-    /// its mode at the same instant: the next ball in the row is struck.
+    /// Whether a reaction leads to another mode and no more. One that lets a state jump, as an impact does, or counts what a
+    /// condition reads, may come back to its mode at the same instant: the next ball in the row is struck.
     pub(super) fn only_changes_mode(&self, reaction: usize) -> bool {
         let program = self.state.program;
         let reaction = &program.reactions[reaction];
         let mut targets = program.assignments[reaction.assignments.clone()].iter();
         matches!(reaction.kind, ReactionKind::Transition { .. })
-            && !targets.any(|assignment| matches!(assignment.target, Target::State(_)))
+            && !targets.any(|assignment| {
+                assignment.counts || matches!(assignment.target, Target::State(_))
+            })
     }
 
     /// Whether a `when` clause lets a state jump.

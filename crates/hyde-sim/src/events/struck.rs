@@ -1,6 +1,6 @@
-//! A state that an event sets keeps that value, whatever held it. A mode that fixes it to another one is left, by the first
-//! exit to one in which the state can have the value: a body that is struck is held no longer. Where there is no such exit
-//! the run ends.
+//! A state that an event sets keeps that value for the instant, whatever holds it. A mode that fixes it to another one is left, by
+//! the first exit to one in which the state can have the value: a body that is struck is held no longer, and one that slides
+//! and is thrown back does not stick on the way. Where there is no such exit the run ends.
 
 use super::Instant;
 use crate::failure::Failure;
@@ -24,14 +24,15 @@ impl Instant<'_, '_> {
             Target::State(position) => Some(position),
             Target::Memory(_) => None,
         });
-        let struck: Vec<usize> = struck.collect();
-        if struck.is_empty() {
+        let now: Vec<usize> = struck.collect();
+        if !now.is_empty() {
+            choose_struck(self.state, self.now.at(), &now);
+            self.struck.extend(now);
+        }
+        if self.struck.is_empty() || program.pins.is_empty() {
             return Ok(());
         }
-        choose_struck(self.state, self.now.at(), &struck);
-        if program.pins.is_empty() {
-            return Ok(());
-        }
+        let struck = std::mem::take(&mut self.struck);
         let given = |automaton: usize, position: usize| {
             let meant = entered
                 .iter()
@@ -43,6 +44,7 @@ impl Instant<'_, '_> {
         let slopes = self.slopes_of_assignments();
         let at = self.now.at();
         let taken = leave_modes(self.state, at, &given)?;
+        self.struck = struck;
         self.state.z[..relations].copy_from_slice(&truths);
         for number in taken {
             let reaction = &program.reactions[number];

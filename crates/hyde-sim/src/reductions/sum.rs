@@ -1,5 +1,6 @@
 //! [`Sum`]: one signal over a run as one number, taken in piece by piece.
 
+use super::cut::change;
 use crate::lobatto::{self, POINTS, WEIGHTS};
 use crate::results::Reduced;
 use hyde_program::ReductionKind;
@@ -36,24 +37,6 @@ impl<'p> Piece<'p> {
         }
     }
 
-    /// Where the truth changes that `holds` at the first of two times and not at the second, or the other way round: the
-    /// last instant on the side of the first, the first on the side of the second.
-    fn change(&mut self, first: f64, second: f64, holds: impl Fn(&[f64]) -> bool) -> (f64, f64) {
-        let (mut a, mut b) = (first, second);
-        let at_first = holds(&(self.at)(first));
-        loop {
-            let middle = 0.5 * (a + b);
-            if middle <= a || middle >= b || b - a <= 1e-14 * b.abs() {
-                return (a, b);
-            }
-            if holds(&(self.at)(middle)) == at_first {
-                a = middle;
-            } else {
-                b = middle;
-            }
-        }
-    }
-
     /// The stretches of it in which a condition holds.
     fn stretches(&mut self, condition: usize) -> Vec<(f64, f64)> {
         let holds = self.columns[condition].map(|value| value != 0.0);
@@ -64,7 +47,8 @@ impl<'p> Piece<'p> {
                 continue;
             }
             let true_there = |values: &[f64]| values[condition] != 0.0;
-            let (before, behind) = self.change(self.times[k - 1], self.times[k], true_there);
+            let between = (self.times[k - 1], self.times[k]);
+            let (before, behind) = change(self.at, between, holds[k - 1], true_there);
             match since.take() {
                 Some(since) => stretches.push((since, before)),
                 None => since = Some(behind),
@@ -299,7 +283,8 @@ impl Sum {
             (Some(condition), Some(&beside)) => {
                 let true_there = |values: &[f64]| values[condition] != 0.0;
                 let t = piece.times[at];
-                let (before, behind) = piece.change(t.min(beside), t.max(beside), true_there);
+                let between = (t.min(beside), t.max(beside));
+                let (before, behind) = change(piece.at, between, !first, true_there);
                 if first { behind } else { before }
             }
             _ => piece.times[at],
@@ -360,7 +345,11 @@ impl Sum {
 /// Until when a signal is above zero, behind a piece of it.
 fn settle(since_s: &mut Option<f64>, piece: &mut Piece<'_>, column: usize) {
     let values = piece.columns[column];
-    since_s.get_or_insert(piece.times[0]);
+    let since = since_s.get_or_insert(piece.times[0]);
+    if since.is_infinite() && values[0] <= 0.0 {
+        // It came back where the stretch before was cut.
+        *since = piece.times[0];
+    }
     if values[POINTS - 1] > 0.0 {
         *since_s = Some(f64::INFINITY);
         return;
@@ -382,7 +371,7 @@ fn settle(since_s: &mut Option<f64>, piece: &mut Piece<'_>, column: usize) {
             (value > 0.0 && above(&(piece.at)(t))).then_some((t, end))
         });
     if let Some((from, to)) = outside {
-        *since_s = Some(piece.change(from, to, above).1);
+        *since_s = Some(change(piece.at, (from, to), true, above).1);
     }
 }
 

@@ -114,6 +114,7 @@ impl Simulation<'_> {
             contradictions: &mut self.results.contradictions,
             sensitivities: self.followers.sensitivities.as_mut(),
             crossed: std::mem::take(&mut self.crossed),
+            struck: Vec::new(),
             modes_are_given: self.modes_are_given,
             long_s: PART_OF_RUN * (self.setup.stop_s - self.setup.start_s),
         }

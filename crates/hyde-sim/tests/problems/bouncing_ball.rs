@@ -74,6 +74,7 @@ fn ball() -> Program {
         }],
         assignments: vec![Assignment {
             target: Target::State(1),
+            counts: false,
             origin,
         }],
         ..program(Ball, unknowns, 1, &["h", "v"])

@@ -8,8 +8,8 @@ use crate::refusals::files as refused;
 use crate::unobservable::unreadable;
 use crate::world::{World, matching};
 use hyde_calibrate::{Recording, Source};
-use hyde_compiler::Compiled;
 use hyde_diag::{Diagnostic, Diagnostics, Span};
+use hyde_program::Program;
 use hyde_syntax::ast::Experiment;
 use hyde_units::counted;
 use std::collections::BTreeMap;
@@ -121,12 +121,12 @@ fn shown(folder: &Path) -> String {
     }
 }
 
-/// Reads the files of a record set.
+/// Reads the files of a record set for a program with values that are set from outside.
 pub(super) fn recording(
     world: &dyn World,
     set: &[(String, PathBuf)],
     experiment: &Experiment,
-    compiled: &Compiled,
+    (program, values): (&Program, &[(usize, f64)]),
     span: Span,
 ) -> Result<Recording, Box<Diagnostic>> {
     let mut tables: BTreeMap<String, hyde_signal::Table> = BTreeMap::new();
@@ -160,6 +160,6 @@ pub(super) fn recording(
         .map(|(name, table)| (name.as_str(), table))
         .collect();
     hyde_signal::align(&mut all);
-    Recording::new(&name, &compiled.program, tables)
+    Recording::new(&name, program, tables, values)
         .map_err(|error| Box::new(unreadable(&name, &error, span)))
 }

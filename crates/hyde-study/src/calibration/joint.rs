@@ -80,6 +80,26 @@ impl JointCalibration {
         }
     }
 
+    /// Looks again where the records begin whose start is not that of the model, with these values of what is searched for;
+    /// whether some start moved.
+    pub fn begin(&mut self, values: &[f64]) -> bool {
+        let mut moved = false;
+        for part in &self.parts {
+            let own = &mut self.experiments[part.experiment];
+            let mut set = own.set.clone();
+            let pairs = part.varied.iter().zip(&part.of);
+            set.extend(pairs.map(|(own, &number)| (own.place, values[number])));
+            let fitted = own.fitted[part.fitted.clone()].iter_mut();
+            let recordings = fitted.chain(&mut own.holdout[part.holdout.clone()]);
+            for recording in recordings.filter(|own| !own.beginning.is_empty()) {
+                let before = recording.beginning.clone();
+                recording.begin(&own.compiled.program, &set);
+                moved |= recording.beginning != before;
+            }
+        }
+        moved
+    }
+
     /// A value each of what is searched for, as the parameters of a part are called.
     #[must_use]
     pub fn settings(&self, part: usize, values: &[f64]) -> Vec<(String, f64)> {
@@ -176,9 +196,10 @@ pub(super) fn made(
                 let first = lists[list].len();
                 for set in sets.iter().filter(|set| set.holdout == holdout) {
                     let experiment = &experiments[number];
-                    let compiled = &prepared_all[number].compiled;
+                    let own = &prepared_all[number];
+                    let own = (&own.compiled.program, own.set.as_slice());
                     let world = asked.world.as_ref();
-                    match recording(world, &set.files, experiment, compiled, found.plan.span) {
+                    match recording(world, &set.files, experiment, own, found.plan.span) {
                         Ok(recording) => lists[list].push(recording),
                         Err(diagnostic) => wrong.push(*diagnostic),
                     }

@@ -309,7 +309,8 @@ impl Bench {
         );
         let made = made.map_err(Failed::Simulated)?;
         let program = &self.compiled.program;
-        let recording = Recording::new(name, program, made.clone()).map_err(Failed::Record)?;
+        let recording = Recording::new(name, program, made.clone(), &self.set);
+        let recording = recording.map_err(Failed::Record)?;
         let recordings = [recording];
         let observer = Observer::new(program, &recordings, &self.set);
         let observer = observer.map_err(Failed::Unsupported)?;

@@ -20,24 +20,32 @@ pub struct Calibrated {
     pub errors: Vec<Vec<RecordErrors>>,
 }
 
+/// A start that is taken from a record is looked for again at most so often.
+const ROUNDS: usize = 6;
+/// A fit has come to its end when a new start moves no parameter by more than this part of its standard deviation.
+const STILL: f64 = 0.01;
+
 /// Calibrates; `profiled` are the numbers whose profiles are asked for. `told` gets what the records determine before the fit
-/// begins; `reached` says how far the fit is.
+/// begins; `reached` says how far the fit is. Where a record begins elsewhere than the model, its start follows the parameters.
 ///
 /// # Errors
 /// Nothing is learned, or an observer cannot run a model: a diagnostic of the file.
 pub fn calibrated(
-    calibration: &JointCalibration,
+    calibration: &mut JointCalibration,
     profiled: &[usize],
     reached: &Reached,
-    told: impl FnOnce(&Identifiability),
+    told: impl FnOnce(&JointCalibration, &Identifiability),
 ) -> Result<Calibrated, Box<Diagnostic>> {
-    let unsupported =
-        |error: Unsupported| Box::new(unobservable::unsupported(&error, calibration.plan.span));
+    let span = calibration.plan.span;
+    let unsupported = |error: Unsupported| Box::new(unobservable::unsupported(&error, span));
     let joint = calibration.joint(Some(reached));
     let nominal: Vec<f64> = calibration.varied.iter().map(|own| own.nominal).collect();
     let before = joint.identifiability(&nominal).map_err(unsupported)?;
-    told(&before);
+    told(calibration, &before);
     let fit = hyde_calibrate::fit(&joint, calibration.plan.starts).map_err(unsupported)?;
+    let fit = begun_anew(calibration, fit, reached).map_err(unsupported)?;
+    let calibration = &*calibration;
+    let joint = calibration.joint(Some(reached));
     if !fit.learned() {
         let names = calibration.numbers.iter().map(Number::name);
         let names: Vec<String> = names.collect();
@@ -56,6 +64,30 @@ pub fn calibrated(
         profiles,
         errors,
     })
+}
+
+/// The fit with the starts of the records as its own parameters have them: a start that is found with wrong parameters pulls
+/// the next ones towards these.
+fn begun_anew(
+    calibration: &mut JointCalibration,
+    first: Fit,
+    reached: &Reached,
+) -> Result<Fit, Unsupported> {
+    let mut found = first;
+    for _ in 0..ROUNDS {
+        if !found.learned() || !calibration.begin(&found.solution.values) {
+            break;
+        }
+        let joint = calibration.joint(Some(reached));
+        let next = hyde_calibrate::fit(&joint, calibration.plan.starts)?;
+        let mut pairs = next.parameters.iter().zip(&found.parameters);
+        let still = pairs.all(|(new, old)| (new.value - old.value).abs() <= STILL * new.deviation);
+        found = next;
+        if still {
+            break;
+        }
+    }
+    Ok(found)
 }
 
 /// The numbers whose profiles are asked for by name: of a parameter with a value each, all of them.

@@ -187,6 +187,11 @@ impl Dependency {
         refused::no_manifest(&folder.join(MANIFEST), &self.name, self.span)
     }
 
+    /// The path leads to the manifest that names the dependency.
+    pub(super) fn itself(&self) -> Diagnostic {
+        refused::depends_on_itself(&self.path, self.span)
+    }
+
     /// The package there has another name.
     pub(super) fn other_name(&self, name: &str) -> Diagnostic {
         refused::other_name(name, (&self.name, &self.path), self.span)

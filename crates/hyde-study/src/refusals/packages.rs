@@ -56,6 +56,10 @@ diagnostics! {
         "there is no `{}`", manifest.display(); at here, "the package `{dependency}` should be there";
         help "the path leads from this manifest's folder to the folder of the other manifest";
     }
+    fn depends_on_itself(path: &str, here: Span) = error BadManifest {
+        "a package depends on itself"; at here, "`{path}` leads to the folder of this manifest";
+        help "remove the line: the files of a package import each other without a dependency";
+    }
     fn other_name(name: &str, (dependency, path): (&str, &str), here: Span) = error BadManifest {
         "the package there is called `{name}`"; at here, "not `{dependency}`";
         help "write `\"{name}\" = \"{path}\"`";

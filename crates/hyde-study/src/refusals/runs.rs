@@ -73,6 +73,12 @@ diagnostics! {
         if let Some(experiment) = experiment { at experiment, "of this experiment"; }
         help "write a `stop` that is later than the start: `stop 1 [s]`";
     }
+    fn lasts(span: &str, experiment: Option<Span>) = error BadSolve {
+        "the run would last {span}: runs last from 1e-6 s to 1e12 s";
+        if let Some(experiment) = experiment { at experiment, "of this experiment"; }
+        note "instants are located to 1e-12 s, and to 1e-12 of the time: events would be lost without a word";
+        help "correct `stop`, or let a ms of the run stand for a ns: divide the rates `der(...)` by 1e6";
+    }
     fn keeps_nothing(name: &str, sweep: Span) = error BadSweep {
         "`keep {name}`: there is no such variable"; at sweep, "in this sweep";
         help "the results of `hyde run --out DIR` list all variables; `keep guide.*;` keeps those of a component";
@@ -133,7 +139,13 @@ diagnostics! {
             [] => "no start value that may change can satisfy an initial equation".to_owned(),
             fixed => format!("an initial equation and the fixed start of {} determine the same", first_four(fixed)),
         };
-        help "remove the initial equation, or set `fixed = false` for a state that it is to determine";
+        match fixed {
+            [] => {
+                help "give a state another start value, from which the equation can be satisfied, remove the equation, or \
+                      set `fixed = false` for a state that it is to determine";
+            }
+            _ => { help "remove the initial equation, or set `fixed = false` for a state that it is to determine"; }
+        }
     }
     fn start_contradicted(state: &str, wanted: &str, found: &str) = error StartContradicted {
         "`{state}` has the start value {wanted}, but the other conditions require {found}";

@@ -8,7 +8,7 @@ use crate::store::Store;
 use crate::{
     Asked, Fault, Kind, Loaded, Project, Records, Refused, assumptions, is_inside, run_failure,
 };
-use hyde_diag::Diagnostic;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Severity};
 use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files, shards, varied};
 use hyde_syntax::ast::{Study, StudyKind};
 use std::path::Path;
@@ -104,6 +104,10 @@ impl Prepared {
             }
         };
         read_all_records(&source).map_err(at_fault)?;
+        if let Some(diagnostics) = unknown_names(&source) {
+            project.diagnostics = diagnostics;
+            return Err(project.refused(Fault::Model));
+        }
         if dataset.measures.is_empty() && dataset.kept.is_empty() {
             let warning = refusals::measures_nothing(study.of.span);
             project.diagnostics.push(warning);
@@ -226,6 +230,28 @@ fn table(asked: &Asked, name: &str) -> Result<hyde_signal::Table, String> {
     // A table of cases has no time: its rows are only counted.
     hyde_signal::read_whole(&bytes, &hyde_signal::Layout::every(1.0))
         .map_err(|error| format!("`{}`: {error}", path.display()))
+}
+
+/// What an alternative that names something unknown is refused with: it would fail in each of its cases. Another one that does
+/// not compile is an outcome of the batch.
+fn unknown_names(source: &Source<'_>) -> Option<Diagnostics> {
+    let choices = source.draft.choices().enumerate();
+    let choices: Vec<(usize, usize)> = choices
+        .filter(|(_, choice)| !choice.name.starts_with("record "))
+        .map(|(at, choice)| (at, choice.options.len()))
+        .collect();
+    let mut alternatives = choices
+        .iter()
+        .flat_map(|&(at, count)| (1..count).map(move |option| (at, option)));
+    alternatives.find_map(|(at, option)| {
+        let mut options = vec![0; source.draft.choices().count()];
+        options[at] = option;
+        let refused = source.compile(&options, &[]).err()?;
+        let unknown =
+            |own: &Diagnostic| own.severity == Severity::Error && own.code == Code::UnknownType;
+        let found = refused.iter().any(unknown);
+        found.then_some(refused)
+    })
 }
 
 /// Reads the records of every alternative, so that all that the batch reads is known.

@@ -12,7 +12,7 @@ use hyde_signal::Table;
 use hyde_sim::FailureKind;
 use hyde_syntax::ast::Name;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A program that can be run, with its records.
 pub struct Ready {
@@ -28,8 +28,9 @@ pub struct Variants {
     known: Mutex<BTreeMap<Variant, Cell>>,
 }
 
-/// A variant, or why it cannot be compiled; made once.
-type Cell = Arc<OnceLock<Result<(Ready, Wanted), Fault>>>;
+/// A variant, or why none of its cases can be compiled; empty as long as neither is known.
+type Cell = Arc<Mutex<Option<Made>>>;
+type Made = Result<Arc<(Ready, Wanted)>, Fault>;
 
 impl Variants {
     /// None yet.
@@ -52,15 +53,40 @@ impl Variants {
             let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
             Arc::clone(known.entry(plan.variant(case)).or_default())
         };
-        let made = cell.get_or_init(|| {
-            let ready = model.compile(&plan.options(case), &plan.settings(case));
-            let ready = ready.map_err(|diagnostics| model.refused(&diagnostics))?;
+        let made = {
+            let mut kept = cell.lock().unwrap_or_else(PoisonError::into_inner);
+            match &*kept {
+                Some(made) => made.clone(),
+                None => {
+                    let (made, of_all) = self.made(model, plan, case);
+                    *kept = of_all.then(|| made.clone());
+                    made
+                }
+            }
+        };
+        made.map(|ready| with(&ready.0, &ready.1))
+    }
+
+    /// Compiles the variant of a case, and whether what comes of it is that of all cases of the variant. A value of the first
+    /// case that its parameter may not have is no fault of the others: the program has the declared value then, and each case
+    /// is held against the bounds when it is run.
+    fn made(&self, model: &Source<'_>, plan: &Plan, case: &Case) -> (Made, bool) {
+        let options = plan.options(case);
+        let ready = |ready: Ready| {
             let wanted = Wanted::of(&ready.program, &self.dataset);
-            Ok((ready, wanted))
-        });
-        made.as_ref()
-            .map(|(ready, wanted)| with(ready, wanted))
-            .map_err(Clone::clone)
+            Ok(Arc::new((ready, wanted)))
+        };
+        let of_case = match model.compile(&options, &plan.settings(case)) {
+            Ok(found) => return (ready(found), true),
+            Err(diagnostics) => model.refused(&diagnostics),
+        };
+        match model.compile(&options, &plan.structural_settings(case)) {
+            Ok(found) => (ready(found), true),
+            Err(diagnostics) => {
+                let same = model.refused(&diagnostics).reason == of_case.reason;
+                (Err(of_case), same)
+            }
+        }
     }
 }
 
@@ -162,6 +188,7 @@ impl Source<'_> {
             | RunError::NoGradientBy(..)
             | RunError::NoStop
             | RunError::EndsBeforeStart { .. }
+            | RunError::Lasts(_)
             | RunError::NotPositive(..)
             | RunError::TooManyRows { .. }
             | RunError::Compare(_) => f64::NAN,

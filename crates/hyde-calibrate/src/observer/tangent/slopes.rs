@@ -30,9 +30,17 @@ pub(crate) struct Slopes<'p> {
 /// Some derivatives of a function by parameters.
 struct Chosen<'p> {
     derivatives: Box<dyn SomeRows + 'p>,
-    /// The row in which each is put, and the place of the parameter it is by.
-    places: Vec<(usize, usize)>,
     values: Vec<f64>,
+    /// Of each shape, what its sizes make of the values.
+    products: Vec<Vec<Product>>,
+}
+
+/// A product in the change by a size: a derivative by a parameter, and how much a unit of the size changes that.
+struct Product {
+    value: usize,
+    /// The row and the column in which it is put.
+    at: (usize, usize),
+    change: f64,
 }
 
 impl<'p> Slopes<'p> {
@@ -49,8 +57,8 @@ impl<'p> Slopes<'p> {
         let channels = program.experiment.measured.iter();
         let channels: Vec<usize> = channels.map(|measured| measured.output).collect();
         Self {
-            residual: Chosen::new(program, Function::Residual, &touched, &moved),
-            measured: Chosen::new(program, Function::Outputs, &channels, &moved),
+            residual: Chosen::new(program, (Function::Residual, &touched), &moved, shapes),
+            measured: Chosen::new(program, (Function::Outputs, &channels), &moved, shapes),
             shapes,
             tracks,
             workspace: Workspace::new(program.n_work),
@@ -70,7 +78,7 @@ impl Forces for Slopes<'_> {
     }
 
     fn shown(&self) -> bool {
-        !self.measured.places.is_empty()
+        !self.measured.values.is_empty()
     }
 
     fn forces(&mut self, place: Place<'_>, out: &mut DMatrix<f64>) {
@@ -87,14 +95,15 @@ impl Forces for Slopes<'_> {
 }
 
 impl<'p> Chosen<'p> {
-    /// Those of some rows by what is moved.
+    /// Those of some rows of a function by what is moved.
     fn new(
         program: &'p Program,
-        function: Function,
-        rows: &[usize],
+        (function, rows): (Function, &[usize]),
         moved: &BTreeSet<usize>,
+        shapes: &[Shape],
     ) -> Self {
         let entries = program.kernels.still_entries(function);
+        // The number of each, the row in which it is put, and the place of the parameter it is by.
         let (mut numbers, mut places) = (Vec::new(), Vec::new());
         for (number, entry) in entries.iter().enumerate() {
             let Some(place) = by(entry, moved) else {
@@ -106,10 +115,25 @@ impl<'p> Chosen<'p> {
                 places.push((row, place));
             }
         }
+        let mut columns = 0..;
+        let mut products_of = |shape: &Shape| {
+            let mut products = Vec::new();
+            for (size, column) in shape.by_size.iter().zip(&mut columns) {
+                for (value, (row, place)) in places.iter().enumerate() {
+                    let changes = size.iter().filter(|(own, _)| own == place);
+                    products.extend(changes.map(|&(_, change)| Product {
+                        value,
+                        at: (*row, column),
+                        change,
+                    }));
+                }
+            }
+            products
+        };
         Self {
             derivatives: program.kernels.some_still_partials(function, &numbers),
             values: vec![0.0; places.len()],
-            places,
+            products: shapes.iter().map(&mut products_of).collect(),
         }
     }
 
@@ -122,15 +146,11 @@ impl<'p> Chosen<'p> {
         out: &mut DMatrix<f64>,
     ) {
         out.fill(0.0);
-        let mut columns = 0..;
-        for (shape, track) in shapes {
+        for ((shape, track), products) in shapes.zip(&self.products) {
             let at = track.point(place, &shape.p, room);
             self.derivatives.evaluate(at, workspace, &mut self.values);
-            for (size, column) in shape.by_size.iter().zip(&mut columns) {
-                for ((row, place), value) in self.places.iter().zip(&self.values) {
-                    let changes = size.iter().filter(|(own, _)| own == place);
-                    changes.for_each(|(_, change)| out[(*row, column)] += value * change);
-                }
+            for product in products {
+                out[product.at] += self.values[product.value] * product.change;
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::args::ModelArgs;
 use crate::project::Project;
-use hyde_compiler::Compiled;
+use hyde_compiler::{Alone, Compiled};
 use hyde_present::{assumptions, states};
 use hyde_program::Program;
 use hyde_units::counted;
@@ -22,6 +22,8 @@ pub(super) struct Found {
     pub(super) warnings: Vec<Value>,
     /// What was taken for granted of records and tables.
     notes: Vec<String>,
+    /// The classes that were looked at by themselves.
+    pub(super) alone: Alone,
 }
 
 impl Found {
@@ -49,13 +51,15 @@ impl Found {
         self.states.extend(other.states);
         self.warnings.extend(other.warnings);
         self.notes.extend(other.notes);
+        self.alone.classes.extend(other.alone.classes);
+        self.alone.left_out.extend(other.alone.left_out);
     }
 
     /// All of it as one object.
     pub(super) fn json(&self) -> Value {
         json!({
             "ok": true, "checked": self.names, "states": self.states, "diagnostics": self.warnings,
-            "notes": self.notes
+            "notes": self.notes, "by_themselves": named(&self.alone.classes), "not_checked": named(&self.alone.left_out)
         })
     }
 
@@ -75,14 +79,43 @@ impl Found {
 
     /// All of it as lines.
     pub(super) fn text(&self, args: &ModelArgs) -> String {
-        let names = match self.names.as_slice() {
-            [] => "nothing to compile".to_owned(),
-            names => names.join(", "),
+        let alone = numbers(&self.alone.classes);
+        let names = match (self.names.as_slice(), alone.as_str()) {
+            ([], "") => "nothing to compile".to_owned(),
+            ([], alone) => alone.to_owned(),
+            (names, _) => names.join(", "),
         };
         let mut lines = vec![format!("{}: {names} in order", args.file.display())];
+        if !self.names.is_empty() && !alone.is_empty() {
+            lines.push(format!("  {alone}: names and units in order"));
+        }
+        if !self.alone.left_out.is_empty() {
+            let list = named(&self.alone.left_out).join(", ");
+            lines.push(format!("  not checked: {list}"));
+        }
         lines.extend(self.choices.iter().cloned());
         let notes = assumptions::text(&self.notes);
         lines.extend(notes.lines().map(str::to_owned));
         lines.join("\n")
     }
+}
+
+/// `model Press`, for each class.
+fn named(classes: &[(&str, String)]) -> Vec<String> {
+    let each = classes.iter();
+    each.map(|(kind, name)| format!("{kind} {name}")).collect()
+}
+
+/// `2 models, 1 effect`, in the order of the file.
+fn numbers(classes: &[(&str, String)]) -> String {
+    let mut numbers: Vec<(&str, usize)> = Vec::new();
+    for (kind, _) in classes {
+        match numbers.iter_mut().find(|known| known.0 == *kind) {
+            Some((_, number)) => *number += 1,
+            None => numbers.push((kind, 1)),
+        }
+    }
+    let each = numbers.into_iter();
+    let each: Vec<String> = each.map(|(kind, number)| counted(number, kind)).collect();
+    each.join(", ")
 }

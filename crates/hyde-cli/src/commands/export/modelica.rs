@@ -6,8 +6,8 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, Told as _, complain, print_output};
 use hyde_experiment::{RunError, extent, parameters};
-use hyde_modelica::{Begun, written};
-use hyde_program::Program;
+use hyde_modelica::{Begun, ticks_before_change, written};
+use hyde_program::{Constant, Program};
 use hyde_units::counted;
 use serde_json::json;
 use std::path::PathBuf;
@@ -86,5 +86,14 @@ fn begun(own: &ModelArgs, project: &mut Project, program: &Program) -> Result<Be
     Ok(Begun {
         states: moved.states,
         memory: moved.memory,
+        earlier: (0..program.clocks.len())
+            .map(|clock| {
+                let constant = |which| program.kernels.constant(which, &p).unwrap_or(f64::NAN);
+                ticks_before_change(
+                    constant(Constant::Delay(clock)),
+                    constant(Constant::Period(clock)),
+                )
+            })
+            .collect(),
     })
 }

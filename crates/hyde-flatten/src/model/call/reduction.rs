@@ -12,6 +12,20 @@ use hyde_ir::{BinaryOp, ExprId, UnaryOp, VariableKind};
 use hyde_syntax::ast::{Binary, Expr, ExprKind, Unary};
 use hyde_units::Dimension;
 
+/// The functions that make one number of a whole run, whatever their arguments are.
+const ALWAYS: [&str; 6] = ["rms", "mean", "first", "last", "settling", "resonance"];
+
+/// A reduction within an expression, where it stands: `last(T)` in `T - last(T)`.
+fn nested(expr: &Expr) -> Option<(&str, Span)> {
+    if let ExprKind::Call(function, arguments) = &expr.kind
+        && let Some(name) = function.as_word()
+        && (ALWAYS.contains(&name) || matches!(name, "max" | "min") && arguments.len() == 1)
+    {
+        return Some((name, expr.span));
+    }
+    expr.children().into_iter().find_map(nested)
+}
+
 impl<'a> Model<'a, '_> {
     /// A reduction of a signal over the run, in a measure or expectation.
     pub(super) fn reduction(
@@ -33,6 +47,10 @@ impl<'a> Model<'a, '_> {
         };
         if scope.setting != Setting::Measure {
             self.report(refused::reduction_outside_measure(name, span));
+            return self.poison(span);
+        }
+        if let Some((inner, here)) = nested(a) {
+            self.report(refused::reduction_of_reduction(name, inner, here));
             return self.poison(span);
         }
         let over_run = scope.with(Setting::Report);
@@ -123,6 +141,7 @@ impl<'a> Model<'a, '_> {
             kind,
             value,
             condition,
+            margins: Vec::new(),
             var,
         };
         self.flat.experiment.reductions.push(reduction);

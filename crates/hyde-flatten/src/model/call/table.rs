@@ -1,8 +1,8 @@
 //! Lookup tables: `table(x, {0, 1, 2} [m], {0, 1, 4} [N])` or `table(x, "grease.csv", "v", "F")` linear between its points,
 //! `smooth_table` with a continuous derivative.
 //!
-//! Beyond its ends a table goes on along its last straight line. The smooth one is the monotone cubic of Fritsch and
-//! Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with the slopes of Fritsch and Butland: it does not overshoot its points.
+//! Beyond its ends a table goes on along a straight line with the slope that it has there. The smooth one is the monotone
+//! cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with the slopes of Fritsch and Butland: it does not overshoot its points.
 //! No events: a table is a measured curve, not a switch. Over the time it has one at each of its points: between two steps that
 //! are both in a rest lies a whole pulse.
 
@@ -50,13 +50,12 @@ impl<'a> Model<'a, '_> {
             "the argument and the places of the table are",
             scope.instance,
         );
-        let slopes = if name == "table" {
-            None
-        } else {
-            Some(slopes(&xs, &ys))
+        let pieces = match name {
+            "table" => straight(&xs, &ys),
+            _ => smooth(&xs, &ys),
         };
         let arena = &mut self.flat.exprs;
-        let value = between(arena, x.id, &xs, &ys, slopes.as_deref());
+        let value = between(arena, x.id, &pieces);
         let id = match xs.len() <= MOST_EVENTS && is_of_time(arena, x.id) {
             true => value,
             false => arena.no_event(value),
@@ -120,63 +119,95 @@ fn is_of_time(arena: &ExprArena, id: ExprId) -> bool {
     arena.any(id, |leaf| leaf == Ir::Time) && !arena.any(id, moves)
 }
 
-/// The curve between points: the halves on both sides of the middle one, down to one piece.
-fn between(
-    arena: &mut ExprArena,
-    x: ExprId,
-    xs: &[f64],
-    ys: &[f64],
-    slopes: Option<&[f64]>,
-) -> ExprId {
-    if xs.len() == 2 {
-        return piece(arena, x, xs, ys, slopes);
+/// A polynomial of the distance from a place, in use from another place on: the first one of a curve also below it.
+struct Piece {
+    from: f64,
+    origin: f64,
+    value: f64,
+    /// Of the distance, its square and its cube.
+    factors: [f64; 3],
+}
+
+impl Piece {
+    /// The straight line through a point.
+    fn line(from: f64, (origin, value): (f64, f64), slope: f64) -> Self {
+        Self {
+            from,
+            origin,
+            value,
+            factors: [slope, 0.0, 0.0],
+        }
     }
-    let middle = xs.len() / 2;
-    let left = between(
-        arena,
-        x,
-        &xs[..=middle],
-        &ys[..=middle],
-        slopes.map(|slopes| &slopes[..=middle]),
-    );
-    let right = between(
-        arena,
-        x,
-        &xs[middle..],
-        &ys[middle..],
-        slopes.map(|slopes| &slopes[middle..]),
-    );
-    let limit = arena.constant(xs[middle]);
+
+    /// The cubic between two points with the slopes at them; a straight line where both are that of the chord.
+    fn cubic(xs: &[f64], ys: &[f64], slopes: &[f64]) -> Self {
+        let width = xs[1] - xs[0];
+        let chord = (ys[1] - ys[0]) / width;
+        let (first, second) = (slopes[0], slopes[1]);
+        Self {
+            from: xs[0],
+            origin: xs[0],
+            value: ys[0],
+            factors: [
+                first,
+                (3.0 * chord - 2.0 * first - second) / width,
+                (first + second - 2.0 * chord) / (width * width),
+            ],
+        }
+    }
+
+    /// `y + d*(m + d*(b + d*a))` with d the distance from the place.
+    fn at(&self, arena: &mut ExprArena, x: ExprId) -> ExprId {
+        let origin = arena.constant(self.origin);
+        let distance = arena.minus(x, origin);
+        let mut sum = arena.constant(self.value);
+        let mut power = distance;
+        for factor in self.factors {
+            if factor != 0.0 {
+                let factor = arena.constant(factor);
+                let term = arena.times(factor, power);
+                sum = arena.plus(sum, term);
+            }
+            power = arena.times(power, distance);
+        }
+        sum
+    }
+}
+
+/// The curve of pieces: the halves on both sides of the middle place, down to one piece.
+fn between(arena: &mut ExprArena, x: ExprId, pieces: &[Piece]) -> ExprId {
+    if let [piece] = pieces {
+        return piece.at(arena, x);
+    }
+    let (left, right) = pieces.split_at(pieces.len().div_ceil(2));
+    let limit = arena.constant(right[0].from);
+    let (left, right) = (between(arena, x, left), between(arena, x, right));
     let below = arena.binary(BinaryOp::Lt, x, limit);
     arena.if_else(below, left, right)
 }
 
-/// `y + d*(m + d*(b + d*a))` with d the distance from the left point; a and b vanish for a straight line.
-fn piece(
-    arena: &mut ExprArena,
-    x: ExprId,
-    xs: &[f64],
-    ys: &[f64],
-    slopes: Option<&[f64]>,
-) -> ExprId {
-    let width = xs[1] - xs[0];
-    let chord = (ys[1] - ys[0]) / width;
-    let (first, second) = slopes.map_or((chord, chord), |slopes| (slopes[0], slopes[1]));
-    let start = arena.constant(xs[0]);
-    let distance = arena.minus(x, start);
-    let mut sum = arena.constant(ys[0]);
-    let mut power = distance;
-    let cubic = (first + second - 2.0 * chord) / (width * width);
-    let square = (3.0 * chord - 2.0 * first - second) / width;
-    for factor in [first, square, cubic] {
-        if factor != 0.0 {
-            let factor = arena.constant(factor);
-            let term = arena.times(factor, power);
-            sum = arena.plus(sum, term);
-        }
-        power = arena.times(power, distance);
+/// The straight lines between the points.
+fn straight(xs: &[f64], ys: &[f64]) -> Vec<Piece> {
+    let points = xs.windows(2).zip(ys.windows(2));
+    points
+        .map(|(x, y)| Piece::line(x[0], (x[0], y[0]), (y[1] - y[0]) / (x[1] - x[0])))
+        .collect()
+}
+
+/// The cubics between the points, and beyond the ends the straight lines that touch them there.
+fn smooth(xs: &[f64], ys: &[f64]) -> Vec<Piece> {
+    let slopes = slopes(xs, ys);
+    let end = xs.len() - 1;
+    let mut pieces: Vec<Piece> = (0..end)
+        .map(|k| Piece::cubic(&xs[k..=k + 1], &ys[k..=k + 1], &slopes[k..=k + 1]))
+        .collect();
+    // The only cubic through two points is a straight line.
+    if end > 1 {
+        let first = Piece::line(f64::NEG_INFINITY, (xs[0], ys[0]), slopes[0]);
+        pieces.insert(0, first);
+        pieces.push(Piece::line(xs[end], (xs[end], ys[end]), slopes[end]));
     }
-    sum
+    pieces
 }
 
 /// Slopes at the points: a weighted harmonic mean of the neighbouring chords, zero at an extremum, the chord at the ends.

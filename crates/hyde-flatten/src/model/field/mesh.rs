@@ -3,6 +3,7 @@
 use crate::dimension::Dim;
 use crate::instance::{DomainId, Scope, Setting};
 use crate::model::Model;
+use crate::refusals::fields as refused;
 use hyde_ir::{ExprId, Index, Range};
 
 impl<'a> Model<'a, '_> {
@@ -20,6 +21,15 @@ impl<'a> Model<'a, '_> {
         self.agree(&from, &to, "the ends of a domain are", instance);
         let arena = &mut self.flat.exprs;
         let length = arena.minus(to.id, from.id);
+        if self
+            .current_value(length)
+            .is_some_and(|length| length <= 0.0)
+        {
+            let domain = &self.domains[domain];
+            let diagnostic = refused::no_length(domain.name, domain.span);
+            self.report(diagnostic);
+        }
+        let arena = &mut self.flat.exprs;
         let count = arena.constant(cells as f64);
         let h = arena.over(length, count);
         let mesh = (from.id, h, to.dim);

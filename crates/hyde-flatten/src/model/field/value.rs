@@ -239,7 +239,9 @@ impl<'a> Model<'a, '_> {
             }
         }
         let field = found.and_then(|var| Some((var, self.notes(var).field?)));
-        if field.is_none() {
+        // A field whose domain is refused is reported there.
+        let mut words = name.parts.iter().map(|part| part.name.text.as_str());
+        if field.is_none() && !words.any(|word| self.undeclared.contains(word)) {
             self.report(refused::position_of_no_field(name));
         }
         field

@@ -110,10 +110,15 @@ impl<'a> Model<'a, '_> {
                     (Turns::Counted, _) | (_, Turns::Counted) => Turns::Counted,
                     _ => Turns::Plain,
                 };
+                let one_signal = match ir == BinaryOp::Sub {
+                    true => Zero::of_one_signal(&self.flat, (a.id, b.id)),
+                    false => None,
+                };
+                let zero = one_signal.unwrap_or_else(|| Zero::of_sum(ir, a.zero, b.zero));
                 Typed {
                     bare: a.bare && b.bare,
                     turns,
-                    zero: Zero::of_sum(ir, a.zero, b.zero),
+                    zero,
                     ..self.typed(id, dim, span)
                 }
             }

@@ -69,7 +69,11 @@ impl<'a> Model<'a, '_> {
                 Member::Instances(list) => {
                     let whole = self.whole_length(part.subscripts.as_slice(), list.len(), scope);
                     components = components.or(whole);
-                    at = *list.first()?;
+                    // What an array without a component has in it is not asked.
+                    let Some(&first) = list.first() else {
+                        return components;
+                    };
+                    at = first;
                     None
                 }
                 Member::Domain(_) => return None,
