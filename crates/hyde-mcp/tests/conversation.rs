@@ -149,16 +149,21 @@ fn tools_are_listed_with_schemas() {
     assert_eq!(tools[1]["inputSchema"]["required"], json!(["file"]));
 }
 
-#[test]
-fn samples_stay_on_the_disk() {
+/// A host whose commands answer with 500 samples.
+fn with_samples() -> Recording {
     let samples: Vec<f64> = (0..500).map(f64::from).collect();
-    let host = Recording {
+    Recording {
         answer: Ran {
             stdout: json!({ "ok": true, "x": samples }).to_string(),
             ..Ran::default()
         },
         ..Recording::default()
-    };
+    }
+}
+
+#[test]
+fn samples_stay_on_the_disk() {
+    let host = with_samples();
     let call = json!({
         "jsonrpc": "2.0", "id": 7, "method": "tools/call",
         "params": { "name": "run", "arguments": { "file": "a.hyde" } },
@@ -180,14 +185,7 @@ fn samples_stay_on_the_disk() {
 
 #[test]
 fn a_second_call_leaves_the_files_of_the_first() {
-    let samples: Vec<f64> = (0..500).map(f64::from).collect();
-    let host = Recording {
-        answer: Ran {
-            stdout: json!({ "ok": true, "x": samples }).to_string(),
-            ..Ran::default()
-        },
-        ..Recording::default()
-    };
+    let host = with_samples();
     let call = |id: u8, tool: &str| {
         json!({
             "jsonrpc": "2.0", "id": id, "method": "tools/call",
